@@ -1,0 +1,19 @@
+"""What every clustering nodelet can be tuned by, whatever its algorithm (PipelineConfig in core/frame_pipeline.h)."""
+from dynamic_reconfigure.parameter_generator_catkin import ParameterGenerator, bool_t, double_t, int_t, str_t
+
+PACKAGE = "lidar_panoptic_clustering"
+
+
+def pipeline_parameters():
+    """A generator that holds the pipeline's parameters; an algorithm's .cfg adds its own."""
+    generator = ParameterGenerator()
+    policies = generator.enum([
+        generator.const("SameClass", str_t, "class", "Points of one class only"),
+        generator.const("SameGroup", str_t, "group", "Points of classes of one group of the class table"),
+        generator.const("AnyClass", str_t, "any", "Points of all thing classes"),
+    ], "Which points may share an instance")
+    generator.add("max_range_m", double_t, 0, "Returns beyond this range count as no return [m]", 300.0, 1.0, 10000.0)
+    generator.add("full_turn", bool_t, 0, "The last column is the first one's neighbour; false for a sector", True)
+    generator.add("class_policy", str_t, 0, "Which points may share an instance", "class", edit_method=policies)
+    generator.add("min_points", int_t, 0, "Smaller instances get id 0; 1 keeps all [points]", 1, 1, 10000)
+    return generator

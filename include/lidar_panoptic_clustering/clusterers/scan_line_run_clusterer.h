@@ -1,0 +1,82 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/clusterer.h"
+#include "lidar_panoptic_clustering/core/disjoint_sets.h"
+
+namespace lidar_panoptic_clustering
+{
+struct ScanLineRunConfig
+{
+  double run_distance_m = 0.5;   ///< consecutive points of a scan line closer than this form a run
+  double line_distance_m = 1.0;  ///< runs of near lines with two points closer than this are one object
+  int max_line_gap = 2;          ///< lines this far apart count as near
+  int max_window_px = 256;       ///< columns searched either side at the most; bounds the work beside the sensor
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor("run_distance_m", self.run_distance_m, 0.01, 10.0);
+    visitor("line_distance_m", self.line_distance_m, 0.01, 10.0);
+    visitor("max_line_gap", self.max_line_gap, 1, 16);
+    visitor("max_window_px", self.max_window_px, 1, 2048);
+  }
+};
+
+/// Scan-line run clustering (Zermas et al., "Fast Segmentation of 3D Point Clouds: A Paradigm on LiDAR Data for
+/// Autonomous Vehicle Applications", ICRA 2017, section IV; settings of Zhao et al. 2021).
+///
+/// A run is a chain of linkable thing points of one scan line, each closer than run_distance_m to the one before,
+/// whatever lies between them; on a full turn the last point of a line is followed by the first. Two runs at most
+/// max_line_gap lines apart are one object when two linkable points of theirs are closer than line_distance_m and lie
+/// within each other's window: asin(min(1, line_distance_m / horizontal range)) of azimuth either side, in columns and
+/// rounded up, at most max_window_px.
+///
+/// Runs that are one object already are not compared again, so that a scan costs little more than its runs' overlaps;
+/// at the most points x 2 max_line_gap x max_window_px comparisons.
+class ScanLineRunClusterer : public Clusterer
+{
+public:
+  using Config = ScanLineRunConfig;
+
+  /// Throws std::invalid_argument on a value outside its range.
+  explicit ScanLineRunClusterer(const ScanLineRunConfig& config = {});
+
+  void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+
+private:
+  struct Point
+  {
+    float x, y, z;
+    int column;
+    int window;           ///< columns searched either side
+    std::uint32_t thing;  ///< index in the ThingScan
+  };
+
+  /// A chain of points of one scan line and one link key, by column: [begin, end) of points_.
+  struct Run
+  {
+    std::uint32_t begin, end;
+    int first_column, last_column;
+    int window;             ///< the widest of its points
+    float min[3], max[3];   ///< bounding box [m]
+  };
+
+  void sortByLink(const ThingScan& scan);
+  void findRuns(const ThingScan& scan);
+  void linkLines(const ThingScan& scan, std::uint32_t upper_slot, std::uint32_t lower_slot);
+  void linkRuns(std::uint32_t upper, std::uint32_t lower, int shift);
+  bool anyPairClose(const Run& upper, const Run& lower, int shift) const;
+
+  ScanLineRunConfig config_;
+  float squared_run_distance_, squared_line_distance_;
+
+  // A slot is a scan line and a link key: row * link_count + link.
+  std::vector<Point> points_;               ///< by slot, then column
+  std::vector<std::uint32_t> slot_begin_;   ///< into points_, one entry more than slots
+  std::vector<Run> runs_;                   ///< by slot, then column
+  std::vector<std::uint32_t> slot_run_;     ///< into runs_, one entry more than slots
+  std::vector<std::uint32_t> run_of_thing_;
+  std::vector<std::uint32_t> representative_;
+  DisjointSets sets_;  ///< of runs
+};
+}  // namespace lidar_panoptic_clustering

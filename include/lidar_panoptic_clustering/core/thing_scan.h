@@ -1,0 +1,75 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/core/point_types.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// Which classes may share an instance.
+enum class ClassPolicy : std::uint8_t
+{
+  kClass,  ///< the same class only
+  kGroup,  ///< classes of one group of the class table
+  kAny     ///< all thing classes
+};
+
+/// "class", "group", "any"
+const std::vector<std::string>& classPolicyNames();
+/// Throws std::invalid_argument for any other name.
+ClassPolicy classPolicyFromName(const std::string& name);
+
+/// A return of a thing class.
+struct ThingPoint
+{
+  float x, y, z;  ///< [m], sensor frame
+  std::uint32_t column;
+};
+
+/// The thing points of an organised scan, scan line by scan line, each line by column: what clusterers work on.
+///
+/// `points`, `link` and `class_index` run in parallel, in row-major order of the pixels. Two points are linkable when
+/// their `link` is the same.
+struct ThingScan
+{
+  std::uint32_t rows = 0;     ///< scan lines
+  std::uint32_t columns = 0;  ///< firings a line
+  bool full_turn = true;      ///< whether the last column is the first one's neighbour
+  float column_angle = 0.0F;  ///< azimuth between neighbouring columns [rad]
+
+  std::vector<ThingPoint> points;
+  std::vector<std::uint8_t> link;
+  std::vector<ClassIndex> class_index;
+  std::vector<std::uint32_t> line_begin;  ///< rows + 1 entries: line r is [line_begin[r], line_begin[r + 1])
+  std::uint32_t link_count = 0;           ///< link < link_count
+  std::uint32_t class_count = 0;          ///< class_index < class_count
+
+  std::vector<std::uint32_t> unknown_labels;  ///< up to 16 raw ids of this scan that the class table does not name
+
+  std::size_t size() const { return points.size(); }
+};
+
+struct SelectionConfig
+{
+  double max_range_m = 300.0;  ///< returns beyond count as no return
+  bool full_turn = true;       ///< the scan closes on itself; false for a sector
+  std::string class_policy = "class";
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor("max_range_m", self.max_range_m, 1.0, 10000.0);
+    visitor("full_turn", self.full_turn);
+    visitor("class_policy", self.class_policy, classPolicyNames());
+  }
+};
+
+/// Finds the thing points of an organised cloud: one pass, linear in the pixels, no allocation once `scan` has grown.
+///
+/// No return is NaN, infinity, exactly (0, 0, 0) or a range above max_range_m; is_dense is not looked at.
+/// Throws std::invalid_argument when width * height is not the number of points.
+void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan);
+}  // namespace lidar_panoptic_clustering

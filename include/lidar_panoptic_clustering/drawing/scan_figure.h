@@ -1,0 +1,57 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/point_types.h"
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// A ring around a place in bird's-eye view, e.g. an object that was wrongly split or merged.
+struct Mark
+{
+  float x = 0.0F, y = 0.0F;  ///< centre [m], sensor frame
+  float radius_m = 2.0F;
+  std::uint32_t rgb = 0xFF4040;  ///< 0x00RRGGBB
+  std::string text;              ///< short; stands beside the ring
+};
+
+/// One clustered scan of a figure.
+struct ScanPanel
+{
+  std::string title;                     ///< e.g. the algorithm's name
+  const PanopticCloud* cloud = nullptr;  ///< row-major, height = scan lines; has to outlive the call
+  std::vector<Mark> marks;
+  std::string caption;  ///< stands after the counts of returns, thing points and instances
+};
+
+struct MarkMeaning
+{
+  std::uint32_t rgb = 0;
+  std::string text;
+};
+
+struct ScanFigureOptions
+{
+  std::string title;                     ///< above all panels; none when empty
+  std::vector<MarkMeaning> mark_legend;  ///< what the marks' colours mean
+  int panel_width_px = 1280;             ///< 320..8192; text and points grow with it
+  int columns = 0;                       ///< panels side by side; 0: up to three in one row, else near a square
+};
+
+/// Draws scans as the literature shows them: the cloud from above and, below it, its range image.
+///
+/// Points with an instance have their own colour (PanopticPoint::rgb); the others are faint: in a dimmed class colour
+/// from above, grey by range in the range image. From above, x points right and y up, range circles are in metres, and
+/// all panels show the same window: the middle 99 % of the points with an instance and the sensor, within 80 m; 50 m
+/// around the sensor where there is no instance. The range image has the highest beam on top whatever the ring order,
+/// and one picture column may stand for several firings: the nearest return on an object is shown, else the nearest
+/// return. A cloud of one row has no range image. No return is NaN, infinity or exactly (0, 0, 0).
+///
+/// Linear in the points. The file is written aside and renamed. Throws std::invalid_argument when there is no panel, a
+/// cloud is missing, a cloud's size contradicts its points, an option is out of range or the picture would be larger
+/// than 32767 px; std::runtime_error naming `png_path` when it cannot be written.
+void drawScanFigure(const std::vector<ScanPanel>& panels, const std::string& png_path,
+                    const ScanFigureOptions& options = {});
+}  // namespace lidar_panoptic_clustering

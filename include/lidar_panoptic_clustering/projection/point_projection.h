@@ -1,0 +1,77 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/point_types.h"
+
+#include <cstdint>
+#include <limits>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// A return as a KITTI file stores it. 16 bytes.
+struct ScanPoint
+{
+  float x, y, z;    ///< [m], sensor frame
+  float remission;  ///< 0..1
+};
+
+struct ProjectionConfig
+{
+  int rows = 64;       ///< scan lines of the sensor
+  int columns = 2048;  ///< azimuth bins of a full turn
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor("rows", self.rows, 1, 1024);
+    visitor("columns", self.columns, 16, 16384);
+  }
+};
+
+/// An unordered scan as an organised cloud, and which points of the scan went where.
+///
+/// Pixels are row-major, pixel = row * width + column. Row 0 is the scan's first ring, KITTI's highest beam. Column 0
+/// looks backwards (azimuth pi) and the azimuth falls with the column: the picture as one sees it looking ahead, +x in
+/// the middle, +y left of it.
+struct Projection
+{
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+
+  LabelledCloud cloud;  ///< NaN coordinates where no return fell
+  std::vector<std::uint32_t> pixel_of_point;
+  std::vector<std::uint32_t> owner_of_pixel;  ///< the point the pixel shows, kNone where it is empty
+
+  /// All points of a pixel, in file order: points[begin[pixel]] .. points[begin[pixel + 1] - 1]. Every point of the
+  /// scan stands in exactly one pixel's list.
+  std::vector<std::uint32_t> begin;
+  std::vector<std::uint32_t> points;
+
+  std::uint32_t rings = 0;  ///< found in the scan, however many rows there are
+};
+
+/// Projects scans whose points come ring after ring (see RingCounter); buffers are kept between scans.
+class PointProjector
+{
+public:
+  /// Throws std::invalid_argument when a member of `config` is outside its range.
+  explicit PointProjector(const ProjectionConfig& config);
+
+  /// The row is the point's ring, the column its azimuth; the nearest point owns the pixel, the first of equals.
+  /// Rings beyond the last row go into the last row, so that no point is lost; fewer rings leave rows empty.
+  /// A point without a return (not finite, 0 0 0, or too far to square) stands in its predecessor's pixel and owns
+  /// none.
+  ///
+  /// `labels`: the points' classes, in the low 16 bits as in SemanticKITTI's files; empty for none (0).
+  /// Throws std::invalid_argument when there are labels, but not as many as points.
+  /// Linear in points and pixels; allocates only while buffers grow.
+  void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, Projection& out);
+
+private:
+  void locate(const std::vector<ScanPoint>& scan, Projection& out);
+  void listPoints(Projection& out);
+  void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, Projection& out) const;
+
+  std::uint32_t rows_, columns_;
+  std::vector<float> nearest_;  ///< squared range of the owners in the row being filled [m^2], by column
+};
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,83 @@
+#include "lidar_panoptic_clustering/clusterers/depth_clusterer.h"
+
+#include "lidar_panoptic_clustering/core/parameters.h"
+
+#include <cmath>
+#include <limits>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
+}  // namespace
+
+DepthClusterer::DepthClusterer(const DepthConfig& config)
+{
+  validateParameters(config);
+  const double tan_theta = std::tan(config.theta_deg * kRadiansPerDegree);
+  squared_tan_theta_ = static_cast<float>(tan_theta * tan_theta);
+  max_squared_distance_ = config.max_distance_m > 0.0
+                              ? static_cast<float>(config.max_distance_m * config.max_distance_m)
+                              : std::numeric_limits<float>::infinity();
+  max_gap_px_ = static_cast<std::uint32_t>(config.max_gap_px);
+}
+
+void DepthClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)
+{
+  sets_.reset(scan.size());
+  linkAlongLines(scan);
+  linkAlongColumns(scan);
+  sets_.flatten(component);
+}
+
+void DepthClusterer::link(const ThingScan& scan, std::uint32_t i, std::uint32_t j)
+{
+  const ThingPoint *far = &scan.points[i], *near = &scan.points[j];
+  const auto squaredRange = [](const ThingPoint& p) { return p.x * p.x + p.y * p.y + p.z * p.z; };
+  if (squaredRange(*far) < squaredRange(*near)) std::swap(far, near);
+
+  const float dx = far->x - near->x, dy = far->y - near->y, dz = far->z - near->z;
+  const float squared_distance = dx * dx + dy * dy + dz * dz;
+  if (squared_distance > max_squared_distance_) return;
+  const float cx = far->y * dz - far->z * dy, cy = far->z * dx - far->x * dz, cz = far->x * dy - far->y * dx;
+  const float dot = far->x * dx + far->y * dy + far->z * dz;  // >= 0: `far` is the farther
+  if (cx * cx + cy * cy + cz * cz > squared_tan_theta_ * dot * dot || squared_distance == 0.0F) sets_.unite(i, j);
+}
+
+void DepthClusterer::linkAlongLines(const ThingScan& scan)
+{
+  for (std::uint32_t row = 0; row < scan.rows; ++row)
+  {
+    last_.assign(scan.link_count, {kNone, 0});
+    first_.assign(scan.link_count, {kNone, 0});
+    for (std::uint32_t i = scan.line_begin[row]; i < scan.line_begin[row + 1]; ++i)
+    {
+      const std::uint32_t column = scan.points[i].column;
+      Last& last = last_[scan.link[i]];
+      if (last.point == kNone)
+        first_[scan.link[i]] = {i, column};
+      else if (column - last.position <= max_gap_px_)
+        link(scan, i, last.point);
+      last = {i, column};
+    }
+    if (!scan.full_turn) continue;
+    for (std::uint32_t key = 0; key < scan.link_count; ++key)
+      if (last_[key].point != kNone && first_[key].position + scan.columns - last_[key].position <= max_gap_px_)
+        link(scan, last_[key].point, first_[key].point);
+  }
+}
+
+void DepthClusterer::linkAlongColumns(const ThingScan& scan)
+{
+  last_above_.assign(static_cast<std::size_t>(scan.columns) * scan.link_count, {kNone, 0});
+  for (std::uint32_t row = 0; row < scan.rows; ++row)
+    for (std::uint32_t i = scan.line_begin[row]; i < scan.line_begin[row + 1]; ++i)
+    {
+      Last& above = last_above_[static_cast<std::size_t>(scan.points[i].column) * scan.link_count + scan.link[i]];
+      if (above.point != kNone && row - above.position <= max_gap_px_) link(scan, i, above.point);
+      above = {i, row};
+    }
+}
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,163 @@
+#include "lidar_panoptic_clustering/core/class_table.h"
+
+#include "shipped_class_tables.h"
+
+#include <yaml-cpp/yaml.h>
+
+#include <algorithm>
+#include <fstream>
+#include <sstream>
+#include <stdexcept>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+// SemanticKITTI keeps the class in the low 16 bits of a label; no convention known has larger ids.
+constexpr std::uint32_t kMaxRawId = 0xFFFF;
+constexpr std::size_t kMaxClasses = 255;
+
+/// Reads one entry of `classes`; `where` ("FILE: class 'car'") begins each message.
+class ClassReader
+{
+public:
+  ClassReader(const YAML::Node& node, std::string where) : node_(node), where_(std::move(where)) {}
+
+  ClassInfo read(std::string& group) const
+  {
+    ClassInfo info;
+    info.name = node_["name"].as<std::string>();
+    info.kind = readKind();
+    info.ids = required<std::vector<std::uint32_t>>("ids", "a list of raw ids");
+    if (info.ids.empty()) fail("ids is empty, expected at least one raw id");
+    const auto color = required<std::vector<int>>("color", "[red, green, blue]");
+    if (color.size() != 3 || std::any_of(color.begin(), color.end(), [](int c) { return c < 0 || c > 255; }))
+      fail("color must be [red, green, blue], each from 0 to 255");
+    info.rgb = static_cast<std::uint32_t>(color[0] << 16 | color[1] << 8 | color[2]);
+    if (!info.isThing()) return info;
+
+    group = node_["group"] ? node_["group"].as<std::string>() : info.name;
+    const auto size = required<std::vector<float>>("size", "[length, width] in metres");
+    if (size.size() != 2 || !(size[1] > 0.0F) || !(size[0] >= size[1]))
+      fail("size must be [length, width] in metres with length >= width > 0");
+    info.length_m = size[0], info.width_m = size[1];
+    info.link_distance_m = required<float>("link", "a distance in metres");
+    if (!(info.link_distance_m > 0.0F)) fail("link must be above 0 m");
+    return info;
+  }
+
+private:
+  [[noreturn]] void fail(const std::string& what) const { throw std::invalid_argument(where_ + ": " + what); }
+
+  template <class T>
+  T required(const char* key, const char* expected) const
+  {
+    if (!node_[key]) fail(std::string("has no '") + key + "', expected " + expected);
+    try
+    {
+      return node_[key].as<T>();
+    }
+    catch (const YAML::Exception&)
+    {
+      fail(std::string("'") + key + "' must be " + expected);
+    }
+  }
+
+  ClassKind readKind() const
+  {
+    const auto kind = required<std::string>("kind", "ignored, stuff or thing");
+    if (kind == "ignored") return ClassKind::kIgnored;
+    if (kind == "stuff") return ClassKind::kStuff;
+    if (kind == "thing") return ClassKind::kThing;
+    fail("kind is '" + kind + "', expected ignored, stuff or thing");
+  }
+
+  YAML::Node node_;
+  std::string where_;
+};
+
+YAML::Node parseYaml(const std::string& yaml, const std::string& source)
+{
+  try
+  {
+    return YAML::Load(yaml);
+  }
+  catch (const YAML::Exception& error)
+  {
+    throw std::invalid_argument(source + ": not a YAML file: " + error.what());
+  }
+}
+}  // namespace
+
+ClassTable ClassTable::parse(const std::string& yaml, const std::string& source)
+{
+  const YAML::Node root = parseYaml(yaml, source);
+  if (!root.IsMap() || !root["classes"] || !root["classes"].IsSequence())
+    throw std::invalid_argument(source + ": expected a map with a list 'classes'");
+
+  ClassTable table;
+  table.name_ = root["name"] ? root["name"].as<std::string>() : source;
+  table.classes_.push_back({"unknown", ClassKind::kIgnored, {}, 0x808080, 0, 0.0F, 0.0F, 0.0F});
+  table.groups_.push_back("");
+
+  for (const YAML::Node& node : root["classes"])
+  {
+    if (!node.IsMap() || !node["name"] || !node["name"].IsScalar())
+      throw std::invalid_argument(source + ": class " + std::to_string(table.size()) + " has no 'name'");
+    const std::string where = source + ": class '" + node["name"].as<std::string>() + "'";
+    if (table.size() > kMaxClasses) throw std::invalid_argument(where + ": more than 255 classes");
+
+    std::string group;
+    ClassInfo info = ClassReader(node, where).read(group);
+    if (table.findByName(info.name) != kUnknownClass) throw std::invalid_argument(where + " is there twice");
+    const auto index = static_cast<ClassIndex>(table.size());
+    for (const std::uint32_t id : info.ids)
+    {
+      if (id > kMaxRawId) throw std::invalid_argument(where + ": id " + std::to_string(id) + " is above 65535");
+      if (table.find(id) != kUnknownClass)
+        throw std::invalid_argument(where + ": id " + std::to_string(id) + " already belongs to class '" +
+                                    table[table.find(id)].name + "'");
+      if (id >= table.class_of_id_.size()) table.class_of_id_.resize(id + 1, kUnknownClass);
+      table.class_of_id_[id] = index;
+    }
+    const auto found = std::find(table.groups_.begin(), table.groups_.end(), group);
+    info.group = static_cast<std::uint8_t>(found - table.groups_.begin());
+    if (found == table.groups_.end()) table.groups_.push_back(group);
+    table.classes_.push_back(std::move(info));
+  }
+  if (table.size() == 1) throw std::invalid_argument(source + ": the list 'classes' is empty");
+  return table;
+}
+
+ClassTable ClassTable::load(const std::string& name_or_path)
+{
+  const auto shipped = shippedClassTables().find(name_or_path);
+  if (shipped != shippedClassTables().end()) return parse(shipped->second, shipped->first);
+
+  std::ifstream file(name_or_path);
+  std::stringstream text;
+  text << file.rdbuf();
+  if (!file.is_open() || file.bad())
+  {
+    std::string known;
+    for (const auto& name : shippedNames()) known += ", " + name;
+    throw std::runtime_error("class table '" + name_or_path + "': cannot be read; expected a YAML file or one of" +
+                             known.substr(1));
+  }
+  return parse(text.str(), name_or_path);
+}
+
+std::vector<std::string> ClassTable::shippedNames()
+{
+  std::vector<std::string> names;
+  for (const auto& [name, yaml] : shippedClassTables()) names.push_back(name);
+  return names;
+}
+
+ClassIndex ClassTable::findByName(const std::string& name) const
+{
+  for (std::size_t i = 1; i < classes_.size(); ++i)
+    if (classes_[i].name == name) return static_cast<ClassIndex>(i);
+  return kUnknownClass;
+}
+}  // namespace lidar_panoptic_clustering

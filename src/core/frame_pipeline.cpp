@@ -1,0 +1,89 @@
+#include "lidar_panoptic_clustering/core/frame_pipeline.h"
+
+#include <chrono>
+#include <utility>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+class Stopwatch
+{
+public:
+  /// Milliseconds since the last call or the construction.
+  double lap()
+  {
+    const auto now = Clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+}  // namespace
+
+FramePipeline::FramePipeline(std::shared_ptr<const ClassTable> table, const PipelineConfig& config,
+                             std::unique_ptr<Clusterer> clusterer)
+  : table_(std::move(table))
+  , selection_(config.selection)
+  , refinement_(config.refinement)
+  , clusterer_(std::move(clusterer))
+{
+}
+
+void FramePipeline::reconfigure(const PipelineConfig& config, std::unique_ptr<Clusterer> clusterer)
+{
+  selection_ = config.selection;
+  refinement_ = Refinement(config.refinement);
+  clusterer_ = std::move(clusterer);
+}
+
+void FramePipeline::segment(const LabelledCloud& in)
+{
+  Stopwatch stopwatch;
+  selectThings(in, *table_, selection_, things_);
+  times_.select_ms = stopwatch.lap();
+
+  clusterer_->cluster(things_, component_);
+  times_.cluster_ms = stopwatch.lap();
+
+  refinement_.refine(things_, component_, instances_);
+  times_.refine_ms = stopwatch.lap();
+  times_.paint_ms = 0.0;
+}
+
+void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
+{
+  Stopwatch stopwatch;
+  out.header = in.header;
+  out.width = in.width, out.height = in.height;
+  out.is_dense = in.is_dense;
+  out.sensor_origin_ = in.sensor_origin_, out.sensor_orientation_ = in.sensor_orientation_;
+  out.points.resize(in.points.size());
+  const LabelledPoint* from = in.points.data();
+  for (auto& to : out.points)
+  {
+    to.getVector4fMap() = from->getVector4fMap();
+    to.intensity = from->intensity;
+    to.label = from->label;
+    to.instance = 0;
+    to.rgb = (*table_)[table_->find(from->label)].rgb;
+    ++from;
+  }
+
+  const auto& colors = colors_.follow(instances_);
+  for (std::uint32_t row = 0; row < things_.rows; ++row)
+  {
+    PanopticPoint* line = out.points.data() + static_cast<std::size_t>(row) * things_.columns;
+    for (std::uint32_t i = things_.line_begin[row]; i < things_.line_begin[row + 1]; ++i)
+    {
+      const std::uint32_t id = instances_.id[i];
+      if (id == 0) continue;
+      line[things_.points[i].column].instance = id;
+      line[things_.points[i].column].rgb = colors[id - 1];
+    }
+  }
+  times_.paint_ms = stopwatch.lap();
+}
+}  // namespace lidar_panoptic_clustering

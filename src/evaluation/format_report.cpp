@@ -1,0 +1,58 @@
+#include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
+
+#include <cstdarg>
+#include <cstdio>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+__attribute__((format(printf, 2, 3))) void append(std::string& out, const char* format, ...)
+{
+  char line[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  out += line;
+}
+
+void appendClasses(const PanopticQuality& quality, ClassKind kind, std::string& out)
+{
+  for (std::size_t c = 0; c < quality.classes().size(); ++c)
+  {
+    const ClassInfo& info = quality.table()[static_cast<ClassIndex>(c)];
+    const ClassCounts& counts = quality.classes()[c];
+    if (info.kind != kind) continue;
+    append(out, "%-16.40s", info.name.c_str());
+    append(out, "%7.1f %6.1f %6.1f %6.1f", 100 * counts.pq(), 100 * counts.sq(), 100 * counts.rq(), 100 * counts.iou());
+    append(out, " %8llu %7llu %7llu\n", static_cast<unsigned long long>(counts.tp),
+           static_cast<unsigned long long>(counts.fp), static_cast<unsigned long long>(counts.fn));
+  }
+}
+}  // namespace
+
+std::string formatReport(const EvaluationReport& report)
+{
+  const PanopticFigures f = report.quality.figures();
+  std::string out;
+  append(out, "[%%]                 PQ     SQ     RQ    IoU       TP      FP      FN\n");
+  appendClasses(report.quality, ClassKind::kThing, out);
+  appendClasses(report.quality, ClassKind::kStuff, out);
+  append(out, "\n%-16s%7.1f %6.1f %6.1f %6.1f   PQ-dagger %.1f\n", "all", 100 * f.pq, 100 * f.sq, 100 * f.rq,
+         100 * f.miou, 100 * f.pq_dagger);
+  append(out, "%-16s%7.1f %6.1f %6.1f          PQ over the classes that occur %.1f\n", "things", 100 * f.pq_th,
+         100 * f.sq_th, 100 * f.rq_th, 100 * f.pq_th_present);
+  append(out, "%-16s%7.1f %6.1f %6.1f\n", "stuff", 100 * f.pq_st, 100 * f.sq_st, 100 * f.rq_st);
+
+  const ObjectErrorCounts& objects = report.objects;
+  append(out,
+         "\nTrue objects of %d points or more: %llu, of which matched %llu, split %llu, merged %llu, missed %llu\n",
+         report.quality.minPoints(), static_cast<unsigned long long>(objects.total()),
+         static_cast<unsigned long long>(objects.matched), static_cast<unsigned long long>(objects.split),
+         static_cast<unsigned long long>(objects.merged), static_cast<unsigned long long>(objects.missed));
+  append(out, "Scans evaluated: %llu, skipped: %zu\n", static_cast<unsigned long long>(report.quality.scanCount()),
+         report.skipped.size());
+  return out;
+}
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,76 @@
+#include "nodelets/stream_diagnostics.h"
+
+#include <algorithm>
+
+namespace lidar_panoptic_clustering
+{
+void StreamDiagnostics::start(ros::NodeHandle& nh, ros::NodeHandle& private_nh, const std::string& name)
+{
+  last_report_ = ros::WallTime::now();
+  updater_ = std::make_unique<diagnostic_updater::Updater>(nh, private_nh, name);
+  updater_->setHardwareID("none");
+  updater_->add("scans", this, &StreamDiagnostics::report);
+  timer_ = private_nh.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_->update(); });
+}
+
+void StreamDiagnostics::processed(const StageMilliseconds& stages)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.processed;
+  if (sums_.size() != stages.size()) sums_ = longest_ = StageMilliseconds(stages.size());
+  for (std::size_t i = 0; i < stages.size(); ++i)
+  {
+    sums_[i].first = longest_[i].first = stages[i].first;
+    sums_[i].second += stages[i].second;
+    longest_[i].second = std::max(longest_[i].second, stages[i].second);
+  }
+}
+
+void StreamDiagnostics::overwritten()
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.overwritten;
+}
+
+bool StreamDiagnostics::refused(const std::string& error)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.refused;
+  last_error_ = error;
+  const auto now = ros::WallTime::now();
+  if (now - last_logged_ < ros::WallDuration(5.0)) return false;
+  last_logged_ = now;
+  return true;
+}
+
+void StreamDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto now = ros::WallTime::now();
+  const double seconds = (now - last_report_).toSec();
+  const std::uint64_t processed = counts_.processed - reported_.processed;
+  const std::uint64_t overwritten = counts_.overwritten - reported_.overwritten;
+  const std::uint64_t refused = counts_.refused - reported_.refused;
+
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  if (refused > 0)
+    status.summary(processed == 0 ? Level::ERROR : Level::WARN, "scans refused: " + last_error_);
+  else if (overwritten > processed)
+    status.summary(Level::WARN, "slower than the scans come: more than half of them dropped");
+  else
+    status.summary(Level::OK, processed > 0 ? "processing scans" : "no scans: no input, or nobody listens");
+
+  status.addf("rate [Hz]", "%.2f", seconds > 0.0 ? static_cast<double>(processed) / seconds : 0.0);
+  for (std::size_t i = 0; i < sums_.size() && processed > 0; ++i)
+    status.addf(sums_[i].first + " [ms]", "mean %.3f, longest %.3f", sums_[i].second / static_cast<double>(processed),
+                longest_[i].second);
+  status.add("scans processed", counts_.processed);
+  status.add("scans dropped", counts_.overwritten);
+  status.add("scans refused", counts_.refused);
+  status.add("last error", last_error_.empty() ? "none" : last_error_);
+
+  last_report_ = now;
+  reported_ = counts_;
+  sums_.clear(), longest_.clear();
+}
+}  // namespace lidar_panoptic_clustering
