@@ -30,7 +30,8 @@ std::vector<Thing> thingsOf(const LabelledCloud& cloud)
   {
     const auto& p = cloud.points[i];
     const ClassIndex link = kittiTable()->find(p.label);
-    if (!(*kittiTable())[link].isThing() || !std::isfinite(p.x) || (p.x == 0.0F && p.y == 0.0F && p.z == 0.0F)) continue;
+    if (!(*kittiTable())[link].isThing() || !std::isfinite(p.x) || (p.x == 0.0F && p.y == 0.0F && p.z == 0.0F))
+      continue;
     things.push_back({p.x, p.y, p.z, static_cast<int>(i / cloud.width), static_cast<int>(i % cloud.width), link});
   }
   return things;
@@ -69,10 +70,10 @@ Graph depthGraph(const LabelledCloud& cloud, const std::vector<Thing>& things)
   const int rows = static_cast<int>(cloud.height), columns = static_cast<int>(cloud.width);
   const auto connect = [&](std::size_t i, std::size_t j)
   {
-    const double d1 = std::max(std::hypot(things[i].x, things[i].y, things[i].z),
-                               std::hypot(things[j].x, things[j].y, things[j].z));
-    const double d2 = std::min(std::hypot(things[i].x, things[i].y, things[i].z),
-                               std::hypot(things[j].x, things[j].y, things[j].z));
+    const double d1 =
+        std::max(std::hypot(things[i].x, things[i].y, things[i].z), std::hypot(things[j].x, things[j].y, things[j].z));
+    const double d2 =
+        std::min(std::hypot(things[i].x, things[i].y, things[i].z), std::hypot(things[j].x, things[j].y, things[j].z));
     const double dot = things[i].x * things[j].x + things[i].y * things[j].y + things[i].z * things[j].z;
     const double a = std::acos(std::min(1.0, dot / (d1 * d2)));
     const double beta = std::atan2(d2 * std::sin(a), d1 - d2 * std::cos(a));
@@ -97,7 +98,8 @@ Graph scanLineRunGraph(const LabelledCloud& cloud, const std::vector<Thing>& thi
   const int columns = static_cast<int>(cloud.width);
   const auto window = [&](const Thing& p)
   {
-    const double exact = std::asin(std::min(1.0, 1.0 / std::hypot(p.x, p.y))) / (2.0 * 3.14159265358979323846 / columns);
+    const double exact =
+        std::asin(std::min(1.0, 1.0 / std::hypot(p.x, p.y))) / (2.0 * 3.14159265358979323846 / columns);
     if (std::abs(exact - std::round(exact)) < 1e-3) graph.doubtful = true;
     return static_cast<int>(std::floor(exact)) + 1;
   };

@@ -22,9 +22,14 @@ std::shared_ptr<const ClassTable> table()
   return shared;
 }
 
+ClassIndex classOf(std::uint32_t label)
+{
+  return table()->find(label & 0xFFFFU);
+}
+
 bool isThing(std::uint32_t label)
 {
-  return (*table())[table()->find(label & 0xFFFFU)].isThing();
+  return (*table())[classOf(label)].isThing();
 }
 
 struct Scene
@@ -43,10 +48,10 @@ struct Scene
     config.rows = rows, config.columns = columns;
     PointProjector(config).project(scan, labels, projection);
     instance_of_pixel.assign(projection.cloud.size(), 0);
-    for (std::uint32_t pixel = 0; pixel < instance_of_pixel.size(); ++pixel)
+    for (std::uint32_t i = 0; i < instance_of_pixel.size(); ++i)
     {
-      const auto owner = projection.owner_of_pixel[pixel];
-      if (owner != kNone && isThing(labels[owner])) instance_of_pixel[pixel] = pixel_instance(pixel, owner);
+      const auto owner = projection.owner_of_pixel[i];
+      if (owner != kNone && isThing(labels[owner])) instance_of_pixel[i] = pixel_instance(i, owner);
     }
     HiddenPointLabeller(table()).label(scan, labels, projection, instance_of_pixel, result);
   }
@@ -56,23 +61,15 @@ struct Scene
     return projection.owner_of_pixel[projection.pixel_of_point[point]] != point;
   }
 
-  int rowsApart(std::uint32_t a, std::uint32_t b) const
-  {
-    const int width = static_cast<int>(projection.cloud.width);
-    return std::abs(static_cast<int>(projection.pixel_of_point[a]) / width -
-                    static_cast<int>(projection.pixel_of_point[b]) / width);
-  }
+  int width() const { return static_cast<int>(projection.cloud.width); }
+  int pixel(std::uint32_t point) const { return static_cast<int>(projection.pixel_of_point[point]); }
+  int rowsApart(std::uint32_t a, std::uint32_t b) const { return std::abs(pixel(a) / width() - pixel(b) / width()); }
   int columnsApart(std::uint32_t a, std::uint32_t b) const
   {
-    const int width = static_cast<int>(projection.cloud.width);
-    const int apart = std::abs(static_cast<int>(projection.pixel_of_point[a]) % width -
-                               static_cast<int>(projection.pixel_of_point[b]) % width);
-    return std::min(apart, width - apart);
+    const int apart = std::abs(pixel(a) % width() - pixel(b) % width());
+    return std::min(apart, width() - apart);
   }
-  bool sameClass(std::uint32_t a, std::uint32_t b) const
-  {
-    return table()->find(labels[a] & 0xFFFFU) == table()->find(labels[b] & 0xFFFFU);
-  }
+  bool sameClass(std::uint32_t a, std::uint32_t b) const { return classOf(labels[a]) == classOf(labels[b]); }
 };
 
 ScanPoint polar(double degrees, float range)
@@ -209,6 +206,29 @@ TEST(HiddenPoints, FollowTheRuleOnRandomScenes)
         scene.labels.push_back(classes[label]);
       }
     scene.run(rows, columns, [](std::uint32_t pixel, std::uint32_t) { return 1 + pixel % 17; });
+    expectRule(scene);
+    if (HasFatalFailure()) FAIL() << "in round " << round;
+  }
+}
+
+TEST(HiddenPoints, FollowTheRuleWhereOwnersAreFar)
+{
+  std::mt19937 random(5);
+  std::uniform_real_distribution<float> behind(1.0F, 3.0F);
+  std::uniform_int_distribution<int> thousandth(0, 999);
+  for (int round = 0; round < 20; ++round)
+  {
+    Scene scene;
+    for (int row = 0; row < 12; ++row)  // a wall all around, few things before it and some behind
+      for (double degrees = 0.6; degrees < 360.0; degrees += 1.2)
+      {
+        scene.scan.push_back(polar(degrees, 0.9F));
+        scene.labels.push_back(thousandth(random) < 4 ? 10 : 50);
+        if (thousandth(random) >= 8) continue;
+        scene.scan.push_back(polar(degrees, behind(random)));
+        scene.labels.push_back(thousandth(random) < 600 ? 10 : 30);
+      }
+    scene.run(12, 300, [](std::uint32_t pixel, std::uint32_t) { return 1 + pixel % 17; });
     expectRule(scene);
     if (HasFatalFailure()) FAIL() << "in round " << round;
   }

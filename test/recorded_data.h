@@ -16,6 +16,6 @@ inline std::string recordedData()
 }  // namespace lidar_panoptic_clustering
 
 /// Skips the test where the recorded scans are absent; else `folder` names them.
-#define REQUIRE_RECORDED_DATA(folder)                                  \
+#define REQUIRE_RECORDED_DATA(folder)                                   \
   const std::string folder = lidar_panoptic_clustering::recordedData(); \
   if (folder.empty()) GTEST_SKIP() << "recorded scans not found: set LIDAR_PANOPTIC_DATA to their folder"

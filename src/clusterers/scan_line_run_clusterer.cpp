@@ -70,7 +70,8 @@ void ScanLineRunClusterer::sortByLink(const ThingScan& scan)
     {
       const ThingPoint& p = scan.points[i];
       points_[slot_begin_[row * scan.link_count + scan.link[i]]++] = {
-          p.x, p.y, p.z, static_cast<int>(p.column), windowOf(p, distance, scan.column_angle, config_.max_window_px), i};
+          p.x, p.y, p.z, static_cast<int>(p.column), windowOf(p, distance, scan.column_angle, config_.max_window_px),
+          i};
     }
   // filling moved every beginning to the next slot's
   for (std::size_t slot = slots; slot > 0; --slot) slot_begin_[slot] = slot_begin_[slot - 1];
@@ -157,9 +158,7 @@ bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int 
       continue;
 
     const auto close = [&](const Point& q)
-    {
-      return std::abs(q.column + shift - p.column) <= q.window && squaredDistance(p, q) < squared_line_distance_;
-    };
+    { return std::abs(q.column + shift - p.column) <= q.window && squaredDistance(p, q) < squared_line_distance_; };
     for (std::uint32_t j = right; j < lower.end && points_[j].column + shift - p.column <= p.window; ++j)
       if (close(points_[j])) return true;
     for (std::uint32_t j = right; j > lower.begin && p.column - points_[j - 1].column - shift <= p.window; --j)

@@ -25,10 +25,10 @@ private:
 
 FramePipeline::FramePipeline(std::shared_ptr<const ClassTable> table, const PipelineConfig& config,
                              std::unique_ptr<Clusterer> clusterer)
-  : table_(std::move(table))
-  , selection_(config.selection)
-  , refinement_(config.refinement)
-  , clusterer_(std::move(clusterer))
+    : table_(std::move(table)),
+      selection_(config.selection),
+      refinement_(config.refinement),
+      clusterer_(std::move(clusterer))
 {
 }
 

@@ -41,7 +41,8 @@ void Refinement::refine(const ThingScan& scan, const std::vector<std::uint32_t>&
     const float scale = 1.0F / static_cast<float>(object.point_count);
     object.x *= scale, object.y *= scale, object.z *= scale;
     const auto votes = votes_.begin() + static_cast<std::ptrdiff_t>(k * classes);
-    object.class_index = static_cast<ClassIndex>(std::max_element(votes, votes + static_cast<std::ptrdiff_t>(classes)) - votes);
+    object.class_index =
+        static_cast<ClassIndex>(std::max_element(votes, votes + static_cast<std::ptrdiff_t>(classes)) - votes);
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -74,8 +74,7 @@ ClassPolicy classPolicyFromName(const std::string& name)
 {
   const auto& names = classPolicyNames();
   const auto found = std::find(names.begin(), names.end(), name);
-  if (found == names.end())
-    throw std::invalid_argument("class_policy is '" + name + "', expected class, group or any");
+  if (found == names.end()) throw std::invalid_argument("class_policy is '" + name + "', expected class, group or any");
   return static_cast<ClassPolicy>(found - names.begin());
 }
 

@@ -37,7 +37,9 @@ void ClusterNodelet::load()
   // the raw parameters first: the dynamic_reconfigure server clamps what is out of range without a word
   const ParameterMap parameters = readParameters(nh, algorithmParameters(algorithm_));
   Algorithm algorithm = makeAlgorithm(algorithm_, parameters);
-  const auto table_name = nh.param<std::string>("class_table", "semantic_kitti");
+  const ParameterInfo table_info{"class_table", std::string("semantic_kitti"), 0.0, 0.0, {}};
+  const ParameterMap given_table = readParameters(nh, {table_info});
+  const auto table_name = std::get<std::string>(given_table.empty() ? table_info.value : given_table.at("class_table"));
   const auto table = std::make_shared<const ClassTable>(ClassTable::load(table_name));
   pipeline_ = std::make_unique<FramePipeline>(table, algorithm.pipeline, std::move(algorithm.clusterer));
   startReconfigure();
@@ -129,8 +131,8 @@ void ClusterNodelet::process(const LabelledCloud& cloud)
   if (markers_.getNumSubscribers() > 0)
   {
     const auto& boxes = boxes_.fit(pipeline_->things(), pipeline_->instances());
-    markers_.publish(boost::make_shared<visualization_msgs::MarkerArray>(instanceMarkers(
-        pcl_conversions::fromPCL(cloud.header), pipeline_->table(), pipeline_->instances(), boxes)));
+    markers_.publish(boost::make_shared<visualization_msgs::MarkerArray>(
+        instanceMarkers(pcl_conversions::fromPCL(cloud.header), pipeline_->table(), pipeline_->instances(), boxes)));
   }
   const StageTimes& times = pipeline_->times();
   const StreamDiagnostics::StageMilliseconds stages = {{"select", times.select_ms},

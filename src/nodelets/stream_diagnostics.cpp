@@ -10,7 +10,9 @@ void StreamDiagnostics::start(ros::NodeHandle& nh, ros::NodeHandle& private_nh, 
   updater_ = std::make_unique<diagnostic_updater::Updater>(nh, private_nh, name);
   updater_->setHardwareID("none");
   updater_->add("scans", this, &StreamDiagnostics::report);
-  timer_ = private_nh.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_->update(); });
+  // update() would skip every call that comes a moment early, and all of them in simulated time that does not run
+  timer_ = private_nh.createWallTimer(ros::WallDuration(1.0),
+                                      [this](const ros::WallTimerEvent&) { updater_->force_update(); });
 }
 
 void StreamDiagnostics::processed(const StageMilliseconds& stages)

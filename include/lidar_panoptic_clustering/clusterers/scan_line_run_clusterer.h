@@ -57,8 +57,8 @@ private:
   {
     std::uint32_t begin, end;
     int first_column, last_column;
-    int window;             ///< the widest of its points
-    float min[3], max[3];   ///< bounding box [m]
+    int window;            ///< the widest of its points
+    float min[3], max[3];  ///< bounding box [m]
   };
 
   void sortByLink(const ThingScan& scan);
@@ -71,10 +71,10 @@ private:
   float squared_run_distance_, squared_line_distance_;
 
   // A slot is a scan line and a link key: row * link_count + link.
-  std::vector<Point> points_;               ///< by slot, then column
-  std::vector<std::uint32_t> slot_begin_;   ///< into points_, one entry more than slots
-  std::vector<Run> runs_;                   ///< by slot, then column
-  std::vector<std::uint32_t> slot_run_;     ///< into runs_, one entry more than slots
+  std::vector<Point> points_;              ///< by slot, then column
+  std::vector<std::uint32_t> slot_begin_;  ///< into points_, one entry more than slots
+  std::vector<Run> runs_;                  ///< by slot, then column
+  std::vector<std::uint32_t> slot_run_;    ///< into runs_, one entry more than slots
   std::vector<std::uint32_t> run_of_thing_;
   std::vector<std::uint32_t> representative_;
   DisjointSets sets_;  ///< of runs

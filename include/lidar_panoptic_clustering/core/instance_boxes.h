@@ -10,9 +10,9 @@ namespace lidar_panoptic_clustering
 /// An upright box in the sensor frame.
 struct InstanceBox
 {
-  float x = 0.0F, y = 0.0F, z = 0.0F;                 ///< centre [m]
+  float x = 0.0F, y = 0.0F, z = 0.0F;                ///< centre [m]
   float length = 0.0F, width = 0.0F, height = 0.0F;  ///< [m], length >= width
-  float yaw = 0.0F;                                   ///< of the length axis about z [rad], in (-pi/2, pi/2]
+  float yaw = 0.0F;                                  ///< of the length axis about z [rad], in (-pi/2, pi/2]
 };
 
 /// The smallest box about each instance: in bird's-eye view the rectangle of least area around its points (one of its

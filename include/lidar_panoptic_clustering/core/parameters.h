@@ -65,7 +65,10 @@ struct Describer
   {
     list.push_back({name, value, static_cast<double>(min), static_cast<double>(max), {}});
   }
-  void operator()(const char* name, double value, double min, double max) { list.push_back({name, value, min, max, {}}); }
+  void operator()(const char* name, double value, double min, double max)
+  {
+    list.push_back({name, value, min, max, {}});
+  }
   void operator()(const char* name, bool value) { list.push_back({name, value, 0.0, 0.0, {}}); }
   void operator()(const char* name, const std::string& value, const std::vector<std::string>& choices)
   {

@@ -13,7 +13,7 @@ namespace lidar_panoptic_clustering
 struct EIGEN_ALIGN16 LabelledPoint
 {
   PCL_ADD_POINT4D  ///< x, y, z [m], sensor frame
-  float intensity = 0.0F;
+      float intensity = 0.0F;
   std::uint32_t label = 0;  ///< raw class id of the label source, see ClassTable
 
   LabelledPoint() { x = y = z = 0.0F, data[3] = 1.0F; }

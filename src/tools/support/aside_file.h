@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cstdio>
 #include <cstring>
+#include <filesystem>
 #include <stdexcept>
 #include <string>
 
@@ -10,18 +11,20 @@ namespace lidar_panoptic_clustering
 {
 /// A text file that is there whole or not at all: written to PATH.part and renamed. Opened before a long computation,
 /// it shows at once that its place cannot be written. Removes what it began when it is destroyed without save().
+/// What exists and is no regular file, a pipe or /dev/stdout, is written to as it is: renaming would replace it.
 class AsideFile
 {
 public:
   /// Throws std::runtime_error with the path and the system's reason.
-  explicit AsideFile(std::string path) : path_(std::move(path)), file_(std::fopen(aside().c_str(), "wb"))
+  explicit AsideFile(const std::string& path)
+      : path_(path), aside_(isSpecial(path) ? path : path + ".part"), file_(std::fopen(aside_.c_str(), "wb"))
   {
     if (file_ == nullptr) fail();
   }
   ~AsideFile()
   {
     if (file_ != nullptr) std::fclose(file_);
-    if (!saved_) std::remove(aside().c_str());
+    if (!saved_ && aside_ != path_) std::remove(aside_.c_str());
   }
   AsideFile(const AsideFile&) = delete;
   AsideFile& operator=(const AsideFile&) = delete;
@@ -33,15 +36,20 @@ public:
     if (!written) fail();
     const bool closed = std::fclose(file_) == 0;
     file_ = nullptr;
-    if (!closed || std::rename(aside().c_str(), path_.c_str()) != 0) fail();
+    if (!closed || (aside_ != path_ && std::rename(aside_.c_str(), path_.c_str()) != 0)) fail();
     saved_ = true;
   }
 
 private:
-  std::string aside() const { return path_ + ".part"; }
+  static bool isSpecial(const std::string& path)
+  {
+    std::error_code ignored;
+    const auto status = std::filesystem::status(path, ignored);
+    return std::filesystem::exists(status) && !std::filesystem::is_regular_file(status);
+  }
   [[noreturn]] void fail() const { throw std::runtime_error("cannot write " + path_ + ": " + std::strerror(errno)); }
 
-  std::string path_;
+  std::string path_, aside_;
   std::FILE* file_;
   bool saved_ = false;
 };

@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
+#include "tools/support/known_classes.h"
 #include "tools/support/progress.h"
 
 #include <algorithm>
@@ -150,17 +151,8 @@ private:
     else
       readLabelFile(truth, buffers.truth);
     sequence.readPredictions(scan.number, buffers.truth.size(), buffers.predicted);
-    requireKnown(buffers.truth, truth);
-    requireKnown(buffers.predicted, predictionFile(set_.predictions, sequence.name(), name));
-  }
-
-  void requireKnown(const std::vector<std::uint32_t>& labels, const std::string& file) const
-  {
-    for (std::size_t i = 0; i < labels.size(); ++i)
-      if (table_->find(rawClass(labels[i])) == kUnknownClass)
-        throw std::runtime_error(file + ": point " + std::to_string(i) + " has class id " +
-                                 std::to_string(rawClass(labels[i])) + ", which is not in class table '" +
-                                 table_->name() + "'");
+    requireKnownClasses(buffers.truth, *table_, truth);
+    requireKnownClasses(buffers.predicted, *table_, predictionFile(set_.predictions, sequence.name(), name));
   }
 
   std::string nameOf(const Scan& scan) const

@@ -1,0 +1,241 @@
+#include "lidar_panoptic_clustering/core/parameters.h"
+#include "lidar_panoptic_clustering/evaluation/object_errors.h"
+#include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
+#include "nodelets/cloud_subscription.h"
+#include "nodelets/parameter_server.h"
+#include "nodelets/stamp_matcher.h"
+
+#include <diagnostic_updater/diagnostic_updater.h>
+#include <nodelet/nodelet.h>
+#include <std_msgs/Float64.h>
+#include <std_srvs/Empty.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <memory>
+#include <mutex>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+struct EvaluatorConfig
+{
+  int min_points = 50;  ///< unmatched segments with fewer points do not count
+  int queue_size = 10;  ///< clouds of either kind that wait for the other; each is a scan in memory
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor("min_points", self.min_points, 0, 100000);
+    visitor("queue_size", self.queue_size, 1, 1000);
+  }
+};
+}  // namespace
+
+/// Compares ~input, a cluster nodelet's output, with ~ground_truth of player or simulator: same pixels, same stamp.
+///
+/// With each pair it publishes the panoptic quality over all pairs since the start or the last call of ~reset
+/// (std_srvs/Empty), as std_msgs/Float64 from 0 to 1 for rqt_plot: ~pq, ~rq, ~sq, ~pq_things (mean over all thing
+/// classes) and ~pq_things_present (over those that occur); and on /diagnostics these, the objects split, merged and
+/// missed, and the clouds that found no partner. It looks at the pixels only: returns hidden in the range image do not
+/// count. Rules: see PanopticQuality; ids of one class (10 and 252) are one class of prediction, as in a label file.
+///
+/// Parameters: ~class_table, and those of EvaluatorConfig.
+class EvaluatorNodelet : public nodelet::Nodelet
+{
+public:
+  ~EvaluatorNodelet() override
+  {
+    timer_.stop();
+    reset_.shutdown();
+    input_.shutdown();
+    ground_truth_.shutdown();
+  }
+
+private:
+  using CloudPtr = boost::shared_ptr<const PanopticCloud>;
+
+  struct Figure
+  {
+    const char* name;
+    double PanopticFigures::*value;
+    ros::Publisher publisher;
+  };
+
+  void onInit() override
+  {
+    auto& nh = getPrivateNodeHandle();
+    try
+    {
+      applyParameters(config_, readParameters(nh, describeParameters(config_)));
+      table_ =
+          std::make_shared<const ClassTable>(ClassTable::load(nh.param<std::string>("class_table", "semantic_kitti")));
+    }
+    catch (const std::exception& error)
+    {
+      NODELET_FATAL("not loaded: %s", error.what());
+      throw;
+    }
+    matcher_ = std::make_unique<StampMatcher<CloudPtr>>(static_cast<std::size_t>(config_.queue_size));
+    startAgain();
+    for (Figure& figure : figures_) figure.publisher = nh.advertise<std_msgs::Float64>(figure.name, 10);
+
+    updater_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), nh, getName());
+    updater_->setHardwareID("none");
+    updater_->add("panoptic quality", this, &EvaluatorNodelet::report);
+    timer_ = nh.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_->update(); });
+    reset_ = nh.advertiseService("reset", &EvaluatorNodelet::reset, this);
+
+    const auto queue_size = static_cast<std::uint32_t>(config_.queue_size);
+    const auto on_error = [this](const std::string& error) { refuse(error); };
+    input_ = subscribeChecked<PanopticCloud>(
+        nh, "input", queue_size, [this](const CloudPtr& cloud) { receive(cloud, &StampMatcher<CloudPtr>::addLeft); },
+        on_error);
+    ground_truth_ = subscribeChecked<PanopticCloud>(
+        nh, "ground_truth", queue_size,
+        [this](const CloudPtr& cloud) { receive(cloud, &StampMatcher<CloudPtr>::addRight); }, on_error);
+  }
+
+  using Add = std::optional<StampMatcher<CloudPtr>::Pair> (StampMatcher<CloudPtr>::*)(std::uint64_t, CloudPtr);
+
+  void receive(const CloudPtr& cloud, Add add)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    const auto pair = ((*matcher_).*add)(cloud->header.stamp, cloud);
+    if (!pair) return;
+    try
+    {
+      evaluate(*pair->first, *pair->second);
+    }
+    catch (const std::exception& error)
+    {
+      note(std::string("scan not evaluated: ") + error.what());
+    }
+  }
+
+  void evaluate(const PanopticCloud& predicted, const PanopticCloud& truth)
+  {
+    const auto size = [](const PanopticCloud& cloud)
+    { return std::to_string(cloud.width) + " x " + std::to_string(cloud.height); };
+    if (predicted.width != truth.width || predicted.height != truth.height || predicted.size() != truth.size())
+      throw std::invalid_argument("expected a cloud of the ground truth's " + size(truth) + " points, found " +
+                                  size(predicted));
+    predicted_.copy(predicted, *table_, true);
+    truth_.copy(truth, *table_, false);
+    quality_->addScan(predicted_.view(), truth_.view(), truth.size());
+    for (const TrueObject& object : errors_.judge(quality_->lastScan())) objects_.add(object.outcome);
+
+    const PanopticFigures values = quality_->figures();
+    for (const Figure& figure : figures_)
+    {
+      std_msgs::Float64 message;
+      message.data = values.*figure.value;
+      figure.publisher.publish(message);
+    }
+  }
+
+  void refuse(const std::string& error)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    note(error);
+  }
+
+  /// Not by a throttled macro: its clock is a static that several evaluators would race for.
+  void note(const std::string& error)
+  {
+    ++refused_;
+    last_error_ = error;
+    const auto now = ros::WallTime::now();
+    if (now - last_logged_ < ros::WallDuration(5.0)) return;
+    last_logged_ = now;
+    NODELET_ERROR("%s", error.c_str());
+  }
+
+  bool reset(std_srvs::Empty::Request&, std_srvs::Empty::Response&)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    startAgain();
+    return true;
+  }
+
+  void startAgain()
+  {
+    quality_ = std::make_unique<PanopticQuality>(table_, config_.min_points);
+    errors_ = ObjectErrors(config_.min_points);
+    objects_ = {};
+    matcher_->reset();
+    refused_ = 0;
+    last_error_.clear();
+  }
+
+  void report(diagnostic_updater::DiagnosticStatusWrapper& status)
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    using Level = diagnostic_msgs::DiagnosticStatus;
+    if (refused_ > 0)
+      status.summary(Level::WARN, "clouds refused: " + last_error_);
+    else
+      status.summary(Level::OK, quality_->scanCount() > 0 ? "evaluating" : "no pair of clouds yet");
+    const PanopticFigures values = quality_->figures();
+    for (const Figure& figure : figures_) status.addf(figure.name, "%.4f", values.*figure.value);
+    status.add("scans evaluated", quality_->scanCount());
+    status.add("true objects", objects_.total());
+    status.add("true objects split", objects_.split);
+    status.add("true objects merged", objects_.merged);
+    status.add("true objects missed", objects_.missed);
+    status.add("predictions without ground truth", matcher_->unmatchedLeft());
+    status.add("ground truths without prediction", matcher_->unmatchedRight());
+    status.add("clouds refused", refused_);
+  }
+
+  /// Class ids and instances of a cloud's pixels.
+  struct Labels
+  {
+    std::vector<std::uint32_t> class_ids, instances;
+
+    /// With `canonical` all ids of a class become its first one, as in prediction files; an object whose points have
+    /// several is one then.
+    void copy(const PanopticCloud& cloud, const ClassTable& table, bool canonical)
+    {
+      class_ids.resize(cloud.size()), instances.resize(cloud.size());
+      for (std::size_t i = 0; i < cloud.size(); ++i)
+      {
+        const PanopticPoint& point = cloud.points[i];
+        const auto& ids = table[table.find(point.label)].ids;
+        class_ids[i] = canonical && !ids.empty() ? ids.front() : point.label;
+        instances[i] = point.instance;
+      }
+    }
+    ScanLabels view() const { return ScanLabels::separate(class_ids.data(), instances.data()); }
+  };
+
+  EvaluatorConfig config_;
+  std::shared_ptr<const ClassTable> table_;
+
+  std::mutex mutex_;                                 ///< callbacks may come in several threads, the service's for one
+  std::unique_ptr<StampMatcher<CloudPtr>> matcher_;  ///< left: input, right: ground truth
+  std::unique_ptr<PanopticQuality> quality_;
+  ObjectErrors errors_;
+  ObjectErrorCounts objects_;
+  Labels predicted_, truth_;
+  std::uint64_t refused_ = 0;
+  std::string last_error_;
+  ros::WallTime last_logged_;
+
+  Figure figures_[5] = {{"pq", &PanopticFigures::pq, {}},
+                        {"rq", &PanopticFigures::rq, {}},
+                        {"sq", &PanopticFigures::sq, {}},
+                        {"pq_things", &PanopticFigures::pq_th, {}},
+                        {"pq_things_present", &PanopticFigures::pq_th_present, {}}};
+  std::unique_ptr<diagnostic_updater::Updater> updater_;
+  ros::WallTimer timer_;
+  ros::ServiceServer reset_;
+  ros::Subscriber input_, ground_truth_;
+};
+}  // namespace lidar_panoptic_clustering
+
+PLUGINLIB_EXPORT_CLASS(lidar_panoptic_clustering::EvaluatorNodelet, nodelet::Nodelet)

@@ -1,0 +1,243 @@
+#include "lidar_panoptic_clustering/clusterers/factory.h"
+#include "lidar_panoptic_clustering/core/point_types.h"
+#include "lidar_panoptic_clustering/drawing/scan_figure.h"
+#include "nodelets/cloud_subscription.h"
+#include "nodelets/frame_report.h"
+#include "nodelets/parameter_server.h"
+
+#include <diagnostic_msgs/DiagnosticArray.h>
+#include <nodelet/nodelet.h>
+#include <pcl_conversions/pcl_conversions.h>
+#include <pluginlib/class_list_macros.hpp>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <map>
+#include <memory>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+struct ReportConfig
+{
+  std::string algorithm = "all";
+  int frames = 0;           ///< of each algorithm, then the process ends; 0 for no end
+  double timeout_s = 30.0;  ///< without a new frame, then the process ends
+  std::string picture;      ///< PNG file
+  std::string report;       ///< file for the lines, standard output when empty
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    auto algorithms = algorithmNames();
+    algorithms.push_back("all");
+    visitor("algorithm", self.algorithm, algorithms);
+    visitor("frames", self.frames, 0, 2147483647);
+    visitor("timeout_s", self.timeout_s, 0.1, 1e6);
+    visitor("picture", self.picture, std::vector<std::string>{});
+    visitor("report", self.report, std::vector<std::string>{});
+  }
+};
+
+std::size_t countReturns(const PanopticCloud& cloud)
+{
+  std::size_t returns = 0;
+  for (const auto& p : cloud.points)
+    if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F))
+      ++returns;
+  return returns;
+}
+
+/// Reads what ClusterNodelet::publishStages() wrote.
+FrameFigures readFigures(const diagnostic_msgs::DiagnosticStatus& status)
+{
+  const std::string unit = "_ms";
+  FrameFigures figures;
+  for (const auto& pair : status.values)
+  {
+    if (pair.key == "things") figures.things = std::stoul(pair.value);
+    if (pair.key == "instances") figures.instances = std::stoul(pair.value);
+    if (pair.key.size() > unit.size() && pair.key.compare(pair.key.size() - unit.size(), unit.size(), unit) == 0)
+      figures.stages.emplace_back(pair.key.substr(0, pair.key.size() - unit.size()), std::stod(pair.value));
+  }
+  return figures;
+}
+}  // namespace
+
+/// Prints a line a frame of the cluster nodelets named after their algorithms (depth, euclidean, ...) in the same
+/// namespace, and at the end a table and a picture; then it ends the process it runs in, nodelet manager and all.
+///
+/// ~input: what the cluster nodelets get, to count the scans they drop. Parameters: those of ReportConfig.
+class FrameReportNodelet : public nodelet::Nodelet
+{
+public:
+  ~FrameReportNodelet() override
+  {
+    // these wait for their callback under way
+    watchdog_.stop();
+    for (auto& subscriber : subscribers_) subscriber.shutdown();
+    if (report_) finish();
+  }
+
+private:
+  using CloudPtr = boost::shared_ptr<const PanopticCloud>;
+
+  struct Frame
+  {
+    CloudPtr cloud;
+    double milliseconds = 0.0;  ///< of all stages
+  };
+
+  /// What came of an algorithm. The cloud and the figures of a scan come on two topics.
+  struct Track
+  {
+    std::map<std::uint64_t, CloudPtr> waiting;  ///< by stamp: clouds whose figures are to come
+    std::map<std::uint64_t, Frame> recent;      ///< by stamp: what the picture may show
+    Frame shown;                                ///< what it does show
+  };
+
+  void onInit() override
+  {
+    try
+    {
+      load();
+    }
+    catch (const std::exception& error)
+    {
+      NODELET_FATAL("not loaded: %s", error.what());
+      throw;
+    }
+    // one callback at a time: a nodelet's handles share a queue that sees to it
+    auto& nh = getNodeHandle();
+    subscribers_.push_back(subscribeChecked<LabelledCloud>(
+        getPrivateNodeHandle(), "input", kQueue,
+        [this](const boost::shared_ptr<const LabelledCloud>& cloud) { report_->sent(cloud->header.stamp); },
+        [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); }));
+    for (const auto& algorithm : algorithms_)
+    {
+      subscribers_.push_back(nh.subscribe<diagnostic_msgs::DiagnosticArray>(
+          algorithm + "/stages", kQueue,
+          [this, algorithm](const diagnostic_msgs::DiagnosticArrayConstPtr& m) { receiveFigures(algorithm, *m); }));
+      subscribers_.push_back(subscribeChecked<PanopticCloud>(
+          nh, algorithm + "/output", kQueue,
+          [this, algorithm](const CloudPtr& cloud) { receiveCloud(algorithm, cloud); },
+          [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); }));
+    }
+    last_frame_ = ros::WallTime::now();
+    watchdog_ = nh.createWallTimer(ros::WallDuration(0.5), [this](const ros::WallTimerEvent&) { watch(); });
+  }
+
+  void load()
+  {
+    applyParameters(config_, readParameters(getPrivateNodeHandle(), describeParameters(config_)));
+    algorithms_ = config_.algorithm == "all" ? algorithmNames() : std::vector<std::string>{config_.algorithm};
+    for (const auto& algorithm : algorithms_) tracks_[algorithm];
+    if (!config_.report.empty())
+    {
+      file_.open(config_.report, std::ios::app);
+      if (!file_) throw std::runtime_error("cannot write the report to '" + config_.report + "'");
+    }
+    report_ = std::make_unique<FrameReport>(algorithms_, static_cast<std::size_t>(config_.frames));
+  }
+
+  std::ostream& lines() { return file_.is_open() ? file_ : std::cout; }
+
+  void receiveCloud(const std::string& algorithm, const CloudPtr& cloud)
+  {
+    auto& waiting = tracks_[algorithm].waiting;
+    waiting[cloud->header.stamp] = cloud;
+    if (waiting.size() > kQueue) waiting.erase(waiting.begin());
+  }
+
+  void receiveFigures(const std::string& algorithm, const diagnostic_msgs::DiagnosticArray& message)
+  {
+    std::uint64_t stamp = 0;
+    pcl_conversions::toPCL(message.header.stamp, stamp);
+    auto& track = tracks_[algorithm];
+    const auto found = track.waiting.find(stamp);
+    if (!report_ || found == track.waiting.end() || message.status.empty()) return;
+    const CloudPtr cloud = found->second;
+    track.waiting.erase(track.waiting.begin(), std::next(found));
+
+    FrameFigures figures = readFigures(message.status.front());
+    figures.stamp_us = stamp;
+    figures.points = countReturns(*cloud);
+    if (!config_.picture.empty()) keep(track, stamp, {cloud, figures.totalMilliseconds()});
+    const std::string line = report_->add(algorithm, std::move(figures));
+    if (line.empty()) return;
+    lines() << line << std::flush;
+    last_frame_ = ros::WallTime::now();
+    if (report_->complete()) finish(), ros::requestShutdown();
+  }
+
+  /// The picture shows one scan for all algorithms, where there is one: a slow algorithm lags behind and drops scans.
+  void keep(Track& track, std::uint64_t stamp, const Frame& frame)
+  {
+    track.recent[stamp] = frame;
+    if (track.recent.size() > kRecent) track.recent.erase(track.recent.begin());
+    const bool common = std::all_of(tracks_.begin(), tracks_.end(),
+                                    [stamp](const auto& t) { return t.second.recent.count(stamp) > 0; });
+    for (auto& [name, other] : tracks_)
+      if (common) other.shown = other.recent[stamp];
+  }
+
+  void watch()
+  {
+    if (!report_ || (ros::WallTime::now() - last_frame_).toSec() < config_.timeout_s) return;
+    NODELET_FATAL("no frame for %.0f s: does the source still send, and are its scans refused?", config_.timeout_s);
+    finish(), ros::requestShutdown();
+  }
+
+  void finish()
+  {
+    if (!config_.picture.empty()) draw();
+    lines() << report_->summary() << std::flush;
+    report_.reset();
+  }
+
+  void draw()
+  {
+    std::vector<ScanPanel> panels;
+    for (const auto& algorithm : algorithms_)
+    {
+      auto& [waiting, recent, shown] = tracks_[algorithm];
+      if (!shown.cloud && !recent.empty()) shown = recent.rbegin()->second;
+      if (!shown.cloud) continue;
+      char caption[32];
+      std::snprintf(caption, sizeof(caption), "%.1f ms", shown.milliseconds);
+      panels.push_back({algorithm, shown.cloud.get(), {}, caption});
+    }
+    try
+    {
+      if (panels.empty()) throw std::runtime_error("there was no frame to draw");
+      drawScanFigure(panels, config_.picture);
+    }
+    catch (const std::exception& error)
+    {
+      NODELET_FATAL("no picture: %s", error.what());
+    }
+  }
+
+  static constexpr std::uint32_t kQueue = 100;
+  static constexpr std::size_t kRecent = 12;
+
+  ReportConfig config_;
+  std::ofstream file_;
+  std::unique_ptr<FrameReport> report_;  ///< gone once it is finished
+  std::vector<std::string> algorithms_;
+  std::map<std::string, Track> tracks_;  ///< by algorithm
+  ros::WallTime last_frame_;
+
+  std::vector<ros::Subscriber> subscribers_;
+  ros::WallTimer watchdog_;
+};
+}  // namespace lidar_panoptic_clustering
+
+PLUGINLIB_EXPORT_CLASS(lidar_panoptic_clustering::FrameReportNodelet, nodelet::Nodelet)

@@ -1,0 +1,143 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/clusterers/factory.h"
+#include "lidar_panoptic_clustering/core/parameters.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <map>
+#include <sstream>
+#include <stdexcept>
+#include <string>
+#include <utility>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// One algorithm with one setting: a row of the benchmark's tables.
+struct RowSettings
+{
+  std::string name;  ///< "depth", or with what was set "depth theta_deg=5"
+  std::string algorithm;
+  ParameterMap parameters;  ///< text, as given
+};
+
+struct BenchmarkSettings
+{
+  std::string dataset;                 ///< folder that holds `sequences`
+  std::vector<std::string> sequences;  ///< "00", ..; none: all of the data set that have ground truth
+  std::string semantics;               ///< folder of predicted classes; empty: the true ones
+  std::string class_table = "semantic_kitti";
+  std::vector<RowSettings> rows;
+  std::string output;  ///< folder of the predictions; empty: none are written
+  int jobs = 1;
+  int shard = 1, shards = 1;  ///< every shards-th scan, beginning with the shard-th
+  int limit = 0;              ///< the first scans of each sequence; 0: all
+  int columns = 2048;         ///< of the range image
+  bool keep_going = false;    ///< skip and count scans that cannot be used
+};
+
+/// The non-empty parts of a list; throws std::invalid_argument naming `option` when there is none.
+inline std::vector<std::string> splitAtCommas(const std::string& list, const std::string& option)
+{
+  std::vector<std::string> names;
+  std::istringstream in(list);
+  for (std::string name; std::getline(in, name, ',');)
+    if (!name.empty()) names.push_back(name);
+  if (names.empty()) throw std::invalid_argument(option + " is given an empty list");
+  return names;
+}
+
+/// `--set algorithm.parameter=value,value`
+struct Sweep
+{
+  std::string algorithm, parameter;
+  std::vector<std::string> values;
+};
+
+/// Throws std::invalid_argument when the text is not of that form.
+inline Sweep parseSweep(const std::string& text)
+{
+  const std::size_t dot = text.find('.'), equals = text.find('=');
+  if (dot == std::string::npos || equals == std::string::npos || dot == 0 || equals < dot + 2)
+    throw std::invalid_argument("--set " + text + ": expected algorithm.parameter=value[,value..]");
+  return {text.substr(0, dot), text.substr(dot + 1, equals - dot - 1),
+          splitAtCommas(text.substr(equals + 1), "--set " + text.substr(0, equals))};
+}
+
+/// The survey's settings of all algorithms: the defaults, and for supervoxel a second row with normals.
+inline std::vector<RowSettings> surveyRows()
+{
+  std::vector<RowSettings> rows;
+  for (const std::string& name : algorithmNames())
+  {
+    rows.push_back({name, name, {}});
+    if (name == "supervoxel")
+      rows.push_back({name + " normal_weight=0.5", name, {{"normal_weight", std::string("0.5")}}});
+  }
+  return rows;
+}
+
+/// Makes of each row of the algorithm one a value.
+inline std::vector<RowSettings> applySweep(const std::vector<RowSettings>& rows, const Sweep& sweep)
+{
+  std::vector<RowSettings> result;
+  bool found = false;
+  for (const RowSettings& row : rows)
+  {
+    if (row.algorithm != sweep.algorithm)
+    {
+      result.push_back(row);
+      continue;
+    }
+    found = true;
+    for (const std::string& value : sweep.values)
+    {
+      result.push_back(row);
+      result.back().parameters[sweep.parameter] = value;
+    }
+  }
+  if (!found)
+    throw std::invalid_argument("--set " + sweep.algorithm + "." + sweep.parameter + ": no row runs algorithm '" +
+                                sweep.algorithm + "'");
+  return result;
+}
+
+/// Names the row by what is set, and drops rows that a sweep made equal to one before.
+inline std::vector<RowSettings> nameRows(std::vector<RowSettings> rows)
+{
+  std::vector<RowSettings> result;
+  for (RowSettings& row : rows)
+  {
+    row.name = row.algorithm;
+    for (const auto& [parameter, value] : row.parameters)
+      row.name += " " + parameter + "=" + std::get<std::string>(value);
+    const auto same = [&](const RowSettings& other) { return other.name == row.name; };
+    if (std::none_of(result.begin(), result.end(), same)) result.push_back(std::move(row));
+  }
+  return result;
+}
+
+/// The rows of `--algorithms` (none: the survey's) and all `--set`, several of one algorithm combined. Throws
+/// std::invalid_argument on unknown algorithms, parameters and values out of range, with what there is.
+inline std::vector<RowSettings> makeRows(const std::vector<std::string>& algorithms,
+                                         const std::vector<std::string>& sets)
+{
+  std::vector<RowSettings> rows = algorithms.empty() ? surveyRows() : std::vector<RowSettings>{};
+  for (const std::string& name : algorithms) rows.push_back({name, name, {}});
+  for (const RowSettings& row : rows) makeAlgorithm(row.algorithm);
+  for (const std::string& text : sets) rows = applySweep(rows, parseSweep(text));
+  for (const RowSettings& row : rows)
+  {
+    try
+    {
+      makeAlgorithm(row.algorithm, row.parameters);
+    }
+    catch (const std::invalid_argument& error)
+    {
+      throw std::invalid_argument("algorithm '" + row.algorithm + "': " + error.what());
+    }
+  }
+  return nameRows(std::move(rows));
+}
+}  // namespace lidar_panoptic_clustering
