@@ -117,8 +117,6 @@ TEST(ClassTable, NamesFileAndClassInEachError)
             in_car + ": link must be above 0 m");
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2], link: wide}"),
             in_car + ": 'link' must be a distance in metres");
-  EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2], link: 1, group: []}"),
-            in_car + ": 'group' must be a name");
   EXPECT_EQ(errorOfClasses(car + ", " + car), in_car + " is there twice");
   EXPECT_EQ(errorOfClasses(car + ", {name: bus, kind: stuff, ids: [5, 10], color: [1, 2, 3]}"),
             "my.yaml: class 'bus': id 10 already belongs to class 'car'");
@@ -132,7 +130,6 @@ TEST(ClassTable, WhatIsNoTableIsSaidSo)
     EXPECT_EQ(errorOf(yaml), "my.yaml: expected a map with a list 'classes'") << yaml;
   EXPECT_EQ(errorOf("classes: []"), "my.yaml: the list 'classes' is empty");
   EXPECT_EQ(errorOf("classes: [}").substr(0, 24), "my.yaml: not a YAML file");
-  EXPECT_EQ(errorOf("{name: [1], classes: []}"), "my.yaml: 'name' must be text");
 }
 
 TEST(ClassTable, HoldsUpTo255Classes)

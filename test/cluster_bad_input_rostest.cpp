@@ -39,7 +39,7 @@ const std::vector<BadMessage>& badMessages()
       {"NoLabel", [](Message& m) { renameField(m, "label", "class"); }, "expected a field 'label'"},
       {"NoZ", [](Message& m) { renameField(m, "z", "height"); }, "expected a field 'z'"},
       {"DataTooShort", [](Message& m) { m.data.resize(m.data.size() - 100); }, "bytes"},
-      {"BigEndian", [](Message& m) { m.is_bigendian = 1; }, "big-endian"},
+      {"BigEndian", [](Message& m) { m.is_bigendian = 1; }, "is_bigendian"},
       {"OffsetOutsideThePoint", [](Message& m) { m.fields[1].offset = m.point_step - 1; }, "inside the point of"},
       {"HugeOffset", [](Message& m) { m.fields[2].offset = 0xFFFFFFFF; }, "inside the point of"},
       {"HugeSize", [](Message& m) { m.width = m.height = 0xFFFFFFFF; }, "expected"},
@@ -62,8 +62,9 @@ TEST_P(BadInput, IsDroppedWithItsReasonAndTheNextScanIsProcessed)
   LogProbe log;
   const std::string name = load("DepthClusterNodelet");
   DiagnosticsProbe diagnostics(name);
+  const auto input = advertise<sensor_msgs::PointCloud2>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
-  const auto input = advertiseTo<sensor_msgs::PointCloud2>(name + "/input");
+  waitForSubscriber(input);
   const LabelledCloud cloud = labelledScene();
   const auto good = toRosMessage(laidOut(cloud, kPlainLayout));
   const auto bad = boost::make_shared<sensor_msgs::PointCloud2>(*good);
@@ -97,8 +98,9 @@ TEST_F(BadPoints, CloudOfThisProcessThatContradictsItselfIsDropped)
 {
   const std::string name = load("EuclideanClusterNodelet");
   DiagnosticsProbe diagnostics(name);
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
-  const auto input = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(input);
   LabelledCloud cloud = labelledScene();
   cloud.points.resize(500);
   input.publish(share(cloud));
@@ -132,9 +134,10 @@ TEST_F(BadPoints, WildCoordinatesAreProcessedByAll)
   {
     SCOPED_TRACE(algorithm);
     const std::string name = load(type);
+    const auto input = advertise<LabelledCloud>(name + "/input");
     Probe<PanopticCloud> output(name + "/output");
     Probe<visualization_msgs::MarkerArray> markers(name + "/markers");
-    const auto input = advertiseTo<LabelledCloud>(name + "/input");
+    waitForSubscriber(input);
     LabelledCloud cloud = wildScene();
     input.publish(share(cloud));
     const auto out = output.next();
@@ -158,10 +161,11 @@ TEST_F(BadPoints, WildCoordinatesAreProcessedByAll)
 TEST_F(BadPoints, UnknownClassesAreNoThingsAndWarnedOfOnceEach)
 {
   const std::string name = load("DepthClusterNodelet");
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
   Probe<rosgraph_msgs::Log> log("/rosout");
   ASSERT_TRUE(eventually([&] { return log.subscriber().getNumPublishers() > 0; }));
-  const auto input = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(input);
   LabelledCloud cloud = twoCars(2.0F);
   cloud.points[3] = labelled(5.0F, 0.0F, 0.0F, 7777);
   cloud.points[4] = labelled(5.0F, 0.1F, 0.0F, 0xFFFFFFFF);
@@ -190,8 +194,9 @@ TEST_F(BadPoints, DiagnosticsTellRateAndStages)
 {
   const std::string name = load("ScanLineRunClusterNodelet");
   DiagnosticsProbe diagnostics(name);
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
-  const auto input = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(input);
   for (int i = 0; i < 5; ++i)
   {
     input.publish(share(labelledScene()));

@@ -55,8 +55,9 @@ TEST_P(EachClusterNodelet, HandsOnPointers)
 {
   const auto [algorithm, type] = GetParam();
   const std::string name = load(type);
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
-  const auto input = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(input);
   LabelledCloud cloud = labelledScene();
   cloud.sensor_origin_ = Eigen::Vector4f(1.0F, 2.0F, 3.0F, 4.0F);
   input.publish(share(cloud));
@@ -86,9 +87,10 @@ class ClusterNodelet : public Graph
 TEST_F(ClusterNodelet, NeighboursShareOneObjectBesideARemoteListener)
 {
   const std::string name = load("DepthClusterNodelet");
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> first(name + "/output"), second(name + "/output");
   Probe<sensor_msgs::PointCloud2> serialised(name + "/output");  // of another type: served with bytes
-  const auto input = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(input);
   LabelledCloud cloud = labelledScene();
   cloud.sensor_origin_ = Eigen::Vector4f(1.0F, 2.0F, 3.0F, 4.0F);
   ASSERT_TRUE(eventually([&] { return serialised.subscriber().getNumPublishers() > 0; }));
@@ -108,9 +110,11 @@ TEST_F(ClusterNodelet, NeighboursShareOneObjectBesideARemoteListener)
 TEST_F(ClusterNodelet, TwoSendersWithTwoLayoutsInOneProcess)
 {
   const std::string first = load("DepthClusterNodelet"), second = load("EuclideanClusterNodelet");
+  const auto plain = advertise<sensor_msgs::PointCloud2>(first + "/input");
+  const auto odd = advertise<sensor_msgs::PointCloud2>(second + "/input");
   Probe<PanopticCloud> of_first(first + "/output"), of_second(second + "/output");
-  const auto plain = advertiseTo<sensor_msgs::PointCloud2>(first + "/input");
-  const auto odd = advertiseTo<sensor_msgs::PointCloud2>(second + "/input");
+  waitForSubscriber(plain);
+  waitForSubscriber(odd);
   const LabelledCloud cloud = labelledScene();
   for (int i = 0; i < 3; ++i)
   {
@@ -126,9 +130,11 @@ TEST_F(ClusterNodelet, TwoSendersWithTwoLayoutsInOneProcess)
 TEST_F(ClusterNodelet, TwoLayoutsOnOneTopic)
 {
   const std::string name = load("ScanLineRunClusterNodelet");
+  const auto plain = advertise<sensor_msgs::PointCloud2>(name + "/input");
+  const auto pointers = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
-  const auto plain = advertiseTo<sensor_msgs::PointCloud2>(name + "/input");
-  const auto pointers = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(plain);
+  waitForSubscriber(pointers);
   const LabelledCloud cloud = labelledScene();
   for (int i = 0; i < 6; ++i)
   {
@@ -156,7 +162,7 @@ std::string paintMilliseconds(Probe<diagnostic_msgs::DiagnosticArray>& stages, c
 TEST_F(ClusterNodelet, SubscribesAndPaintsOnlyWhileSomeoneListens)
 {
   const std::string name = load("DepthClusterNodelet");
-  const auto input = ros::NodeHandle().advertise<LabelledCloud>(name + "/input", 1);
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<diagnostic_msgs::DiagnosticArray> stages(name + "/stages");
   ASSERT_TRUE(eventually([&] { return stages.subscriber().getNumPublishers() > 0; }));
   const auto subscribed = [&] { return input.getNumSubscribers() == 1; };
@@ -202,8 +208,9 @@ void addTurnedCar(LabelledCloud& cloud)
 TEST_F(ClusterNodelet, MarkersAreTheObjectList)
 {
   const std::string name = load("EuclideanClusterNodelet");
+  const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<visualization_msgs::MarkerArray> markers(name + "/markers");
-  const auto input = advertiseTo<LabelledCloud>(name + "/input");
+  waitForSubscriber(input);
   LabelledCloud cloud = emptyCloud(16, 80);
   cloud.header.frame_id = "lidar";
   cloud.header.stamp = 5000000;

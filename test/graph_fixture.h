@@ -78,13 +78,28 @@ private:
   ros::Subscriber subscriber_;  // last: gone before what its callback uses
 };
 
-/// A publisher that has `subscribers` when this returns.
+/// Whether nothing comes any more but what is on its way.
 template <class Message>
-ros::Publisher advertiseTo(const std::string& topic, std::uint32_t subscribers = 1)
+bool fallsSilent(Probe<Message>& probe)
 {
-  ros::Publisher publisher = ros::NodeHandle().advertise<Message>(topic, 100);
-  EXPECT_TRUE(eventually([&] { return publisher.getNumSubscribers() >= subscribers; })) << topic;
-  return publisher;
+  ros::WallDuration(0.2).sleep();
+  probe.forget();
+  ros::WallDuration(0.1).sleep();
+  return probe.takeIfThere() == nullptr;
+}
+
+/// To be called before anything makes a nodelet subscribe to the topic: where one thread advertises while another
+/// subscribes, roscpp may connect the two twice, and every message arrives twice.
+template <class Message>
+ros::Publisher advertise(const std::string& topic)
+{
+  return ros::NodeHandle().advertise<Message>(topic, 100);
+}
+
+inline void waitForSubscriber(const ros::Publisher& publisher)
+{
+  EXPECT_TRUE(eventually([&] { return publisher.getNumSubscribers() > 0; })) << publisher.getTopic();
+  EXPECT_EQ(publisher.getNumSubscribers(), 1U) << publisher.getTopic();
 }
 
 /// The latest /diagnostics of a nodelet by key, its message under "message", its level under "level".

@@ -40,8 +40,9 @@ TEST_F(OrganizerGraph, TakesEitherOrientationAndAnyLayout)
 {
   ros::param::set(name_ + "/orientation", "rows_are_firings");
   ASSERT_TRUE(start());
+  const auto input = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
   Probe<LabelledCloud> output(name_ + "/output");
-  const auto input = advertiseTo<sensor_msgs::PointCloud2>(name_ + "/input");
+  waitForSubscriber(input);
   for (const auto& layout : {kPlainLayout, kOddLayout})
   {
     input.publish(toRosMessage(transposed(laidOut(labelledScene(), layout))));
@@ -58,7 +59,7 @@ TEST_F(OrganizerGraph, FeedsAClusterNodeletOfItsManager)
   ASSERT_TRUE(start());
   const std::string clusterer = newName();
   ASSERT_TRUE(tryLoad(clusterer, "ScanLineRunClusterNodelet", {{clusterer + "/input", name_ + "/output"}}));
-  const auto input = ros::NodeHandle().advertise<sensor_msgs::PointCloud2>(name_ + "/input", 1);
+  const auto input = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
   ros::WallDuration(0.2).sleep();
   EXPECT_EQ(input.getNumSubscribers(), 0U) << "nobody listens at the end of the chain";
 
@@ -79,8 +80,9 @@ TEST_F(OrganizerGraph, BadCloudsAreDroppedWithTheirReasonAndTheNextOneIsTaken)
   LogProbe log;
   ASSERT_TRUE(start());
   DiagnosticsProbe diagnostics(name_);
+  const auto input = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
   Probe<LabelledCloud> output(name_ + "/output");
-  const auto input = advertiseTo<sensor_msgs::PointCloud2>(name_ + "/input");
+  waitForSubscriber(input);
   const auto good = toRosMessage(laidOut(labelledScene(), kPlainLayout));
   const auto short_of_data = boost::make_shared<sensor_msgs::PointCloud2>(*good);
   short_of_data->data.resize(77);
@@ -93,7 +95,7 @@ TEST_F(OrganizerGraph, BadCloudsAreDroppedWithTheirReasonAndTheNextOneIsTaken)
   EXPECT_NE(message.find("found 77"), std::string::npos) << message;
   EXPECT_EQ(diagnostics.waitFor("scans refused", "1")["last error"], message);
   input.publish(big_endian);
-  EXPECT_NE(diagnostics.waitFor("scans refused", "2")["last error"].find("big-endian"), std::string::npos);
+  EXPECT_NE(diagnostics.waitFor("scans refused", "2")["last error"].find("is_bigendian"), std::string::npos);
   input.publish(good);
   const auto cloud = output.next();
   ASSERT_TRUE(cloud);

@@ -116,11 +116,6 @@ TEST(Parameters, WhatCannotBeUsedIsNamedWithWhatIsAllowed)
   }
 }
 
-TEST(Parameters, FreeTextThatIsNoTextIsSaidSo)
-{
-  EXPECT_EQ(errorOf({{"field", 5}}), "parameter 'field': expected text, got 5");
-}
-
 TEST(Parameters, UnknownNamesAreAnErrorUnlessLeftToTheCaller)
 {
   EXPECT_EQ(errorOf({{"lines", 4}, {"Lines", 4}}),

@@ -29,7 +29,7 @@ struct ReportConfig
 {
   std::string algorithm = "all";
   int frames = 0;           ///< of each algorithm, then the process ends; 0 for no end
-  double timeout_s = 30.0;  ///< without a new frame, then the process ends
+  double timeout_s = 15.0;  ///< without a new frame, then the process ends
   std::string picture;      ///< PNG file
   std::string report;       ///< file for the lines, standard output when empty
 
@@ -82,7 +82,8 @@ public:
   {
     // these wait for their callback under way
     watchdog_.stop();
-    for (auto& subscriber : subscribers_) subscriber.shutdown();
+    for (auto& subscriber : stages_) subscriber.shutdown();
+    for (auto& subscriber : clouds_) subscriber.shutdown();
     if (report_) finish();
   }
 
@@ -115,23 +116,31 @@ private:
       throw;
     }
     // one callback at a time: a nodelet's handles share a queue that sees to it
-    auto& nh = getNodeHandle();
-    subscribers_.push_back(subscribeChecked<LabelledCloud>(
-        getPrivateNodeHandle(), "input", kQueue,
-        [this](const boost::shared_ptr<const LabelledCloud>& cloud) { report_->sent(cloud->header.stamp); },
-        [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); }));
     for (const auto& algorithm : algorithms_)
-    {
-      subscribers_.push_back(nh.subscribe<diagnostic_msgs::DiagnosticArray>(
+      stages_.push_back(getNodeHandle().subscribe<diagnostic_msgs::DiagnosticArray>(
           algorithm + "/stages", kQueue,
           [this, algorithm](const diagnostic_msgs::DiagnosticArrayConstPtr& m) { receiveFigures(algorithm, *m); }));
-      subscribers_.push_back(subscribeChecked<PanopticCloud>(
-          nh, algorithm + "/output", kQueue,
-          [this, algorithm](const CloudPtr& cloud) { receiveCloud(algorithm, cloud); },
-          [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); }));
-    }
     last_frame_ = ros::WallTime::now();
-    watchdog_ = nh.createWallTimer(ros::WallDuration(0.5), [this](const ros::WallTimerEvent&) { watch(); });
+    watchdog_ =
+        getNodeHandle().createWallTimer(ros::WallDuration(0.1), [this](const ros::WallTimerEvent&) { watch(); });
+  }
+
+  /// The cluster nodelets start with the first subscriber to their output, and so does the source. Done once they are
+  /// all there, so that all of them get the first scan.
+  void subscribeToClouds()
+  {
+    const auto on_error = [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); };
+    clouds_.push_back(subscribeChecked<LabelledCloud>(
+        getPrivateNodeHandle(), "input", kQueue,
+        [this](const boost::shared_ptr<const LabelledCloud>& cloud)
+        {
+          if (report_) report_->sent(cloud->header.stamp);
+        },
+        on_error));
+    for (const auto& algorithm : algorithms_)
+      clouds_.push_back(subscribeChecked<PanopticCloud>(
+          getNodeHandle(), algorithm + "/output", kQueue,
+          [this, algorithm](const CloudPtr& cloud) { receiveCloud(algorithm, cloud); }, on_error));
   }
 
   void load()
@@ -190,7 +199,10 @@ private:
 
   void watch()
   {
-    if (!report_ || (ros::WallTime::now() - last_frame_).toSec() < config_.timeout_s) return;
+    const auto there = [](const ros::Subscriber& subscriber) { return subscriber.getNumPublishers() > 0; };
+    if (!report_) return;
+    if (clouds_.empty() && std::all_of(stages_.begin(), stages_.end(), there)) subscribeToClouds();
+    if ((ros::WallTime::now() - last_frame_).toSec() < config_.timeout_s) return;
     NODELET_FATAL("no frame for %.0f s: does the source still send, and are its scans refused?", config_.timeout_s);
     finish(), ros::requestShutdown();
   }
@@ -235,7 +247,7 @@ private:
   std::map<std::string, Track> tracks_;  ///< by algorithm
   ros::WallTime last_frame_;
 
-  std::vector<ros::Subscriber> subscribers_;
+  std::vector<ros::Subscriber> stages_, clouds_;
   ros::WallTimer watchdog_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -139,11 +139,12 @@ private:
     }
   }
 
-  /// One write a line, so that threads and shards do not mix theirs, and nothing is lost when the program is killed.
+  /// One write a line, so that threads and shards do not mix theirs, and nothing is lost when the program is killed. A
+  /// line begins with its line break: what a full disk cut short before it stays a line of its own.
   void appendTime(const FrameTime& time)
   {
     char line[160];
-    const int length = std::snprintf(line, sizeof line, "%s,%u,%u,%.17g,%.17g;\n", time.scan.c_str(), time.points,
+    const int length = std::snprintf(line, sizeof line, "\n%s,%u,%u,%.17g,%.17g;", time.scan.c_str(), time.points,
                                      time.thing_points, time.cluster_ms, time.pipeline_ms);
     const int file = ::open(timesFile().c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
     bool written = file >= 0 && ::write(file, line, static_cast<std::size_t>(length)) == length;
