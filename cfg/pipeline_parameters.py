@@ -15,5 +15,13 @@ def pipeline_parameters():
     generator.add("max_range_m", double_t, 0, "Returns beyond this range count as no return [m]", 300.0, 1.0, 10000.0)
     generator.add("full_turn", bool_t, 0, "The last column is the first one's neighbour; false for a sector", True)
     generator.add("class_policy", str_t, 0, "Which points may share an instance", "class", edit_method=policies)
+    generator.add("link_distance_scale", double_t, 0, "Factor on the class table's link distances", 1.0, 0.05, 100.0)
+    generator.add("bridge_distance_m", double_t, 0,
+                  "Objects of one group of classes that are closer are one; 0: never [m]", 0.3, 0.0, 10.0)
+    generator.add("split", bool_t, 0, "Objects too big for their class are cut where they hang together least", True)
+    generator.add("size_margin", double_t, 0, "Factor on the class's usual size above which an object is too big",
+                  1.3, 1.0, 10.0)
+    generator.add("merge", bool_t, 0, "Parts that together still fit one object of their class are joined", True)
+    generator.add("vote", bool_t, 0, "All points of an instance get the class of most of them", True)
     generator.add("min_points", int_t, 0, "Smaller instances get id 0; 1 keeps all [points]", 1, 1, 10000)
     return generator

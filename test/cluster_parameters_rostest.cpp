@@ -4,6 +4,7 @@
 #include "lidar_panoptic_clustering/clusterers/factory.h"
 
 #include <dynamic_reconfigure/Reconfigure.h>
+#include <lidar_panoptic_clustering/BirdsEyeClusterConfig.h>
 #include <lidar_panoptic_clustering/DepthClusterConfig.h>
 #include <lidar_panoptic_clustering/EuclideanClusterConfig.h>
 #include <lidar_panoptic_clustering/ScanLineRunClusterConfig.h>
@@ -77,6 +78,7 @@ TEST(CfgFiles, HaveTheDefaultsAndRangesOfTheCode)
   expectCfgAgrees<SupervoxelClusterConfig>("supervoxel");
   expectCfgAgrees<DepthClusterConfig>("depth");
   expectCfgAgrees<ScanLineRunClusterConfig>("scan_line_run");
+  expectCfgAgrees<BirdsEyeClusterConfig>("birds_eye");
 }
 
 class ClusterParameters : public Graph

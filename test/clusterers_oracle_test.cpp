@@ -152,6 +152,17 @@ Graph euclideanGraph(const LabelledCloud&, const std::vector<Thing>& things)
   return graph;
 }
 
+Graph birdsEyeGraph(const LabelledCloud&, const std::vector<Thing>& things)
+{
+  Graph graph(things.size());
+  for (std::size_t i = 0; i < things.size(); ++i)
+    for (std::size_t j = 0; j < i; ++j)
+      if (things[i].link == things[j].link &&
+          graph.below(std::hypot(things[i].x - things[j].x, things[i].y - things[j].y), 0.5))
+        graph.link(i, j);
+  return graph;
+}
+
 struct Rule
 {
   std::string algorithm;
@@ -173,7 +184,7 @@ TEST_P(OracleTest, randomScansAreSplitAsTheRuleSays)
     const Graph graph = GetParam().oracle(cloud, things);
     if (graph.doubtful) continue;
     std::vector<std::uint32_t> found;
-    const PanopticCloud out = runAlgorithm(GetParam().algorithm, cloud);
+    const PanopticCloud out = runRule(GetParam().algorithm, cloud);
     for (const Thing& thing : things) found.push_back(out.points[thing.row * cloud.width + thing.column].instance);
     const auto expected = components(things.size(), graph.neighbours);
     ASSERT_EQ(found, expected) << "seed " << seed;
@@ -186,7 +197,7 @@ TEST_P(OracleTest, randomScansAreSplitAsTheRuleSays)
 
 INSTANTIATE_TEST_SUITE_P(Rules, OracleTest,
                          testing::Values(Rule{"depth", depthGraph}, Rule{"scan_line_run", scanLineRunGraph},
-                                         Rule{"euclidean", euclideanGraph}),
+                                         Rule{"euclidean", euclideanGraph}, Rule{"birds_eye", birdsEyeGraph}),
                          [](const auto& test) { return test.param.algorithm; });
 
 using XyzCloud = pcl::PointCloud<pcl::PointXYZ>;
@@ -241,8 +252,7 @@ TEST(SupervoxelOracle, pointsTakeTheSupervoxelPclGivesTheirVoxel)
     {
       std::vector<std::array<float, 3>> left_out;
       const auto expected = supervoxelsByPcl(points, normal_weight, left_out);
-      const PanopticCloud out =
-          runAlgorithm("supervoxel", cloud, {{"normal_weight", static_cast<double>(normal_weight)}});
+      const PanopticCloud out = runRule("supervoxel", cloud, {{"normal_weight", static_cast<double>(normal_weight)}});
       std::map<std::uint32_t, std::uint32_t> label_of_instance, instance_of_label;
       for (const auto& p : out.points)
       {

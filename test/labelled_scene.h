@@ -12,11 +12,12 @@
 namespace lidar_panoptic_clustering
 {
 /// The algorithms and the nodelets that run them.
-constexpr std::array<std::pair<const char*, const char*>, 4> kClusterNodelets = {{
+constexpr std::array<std::pair<const char*, const char*>, 5> kClusterNodelets = {{
     {"euclidean", "EuclideanClusterNodelet"},
     {"supervoxel", "SupervoxelClusterNodelet"},
     {"depth", "DepthClusterNodelet"},
     {"scan_line_run", "ScanLineRunClusterNodelet"},
+    {"birds_eye", "BirdsEyeClusterNodelet"},
 }};
 
 /// A scan of 8 x 64 pixels with a dozen objects, and a header.

@@ -7,12 +7,12 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-TEST_F(PanopticBenchmark, TheSurveysRowsOnAllSequences)
+TEST_F(PanopticBenchmark, AllRowsOnAllSequences)
 {
   ASSERT_EQ(benchmark("--report r.json"), 0) << err();
   const auto r = report("r.json");
   const std::vector<std::string> rows = {"euclidean", "supervoxel", "supervoxel normal_weight=0.5", "depth",
-                                         "scan_line_run"};
+                                         "scan_line_run", "birds_eye"};
   EXPECT_EQ(r.at("rows").get<std::vector<std::string>>(), rows);
   for (const std::string& row : rows)
   {

@@ -91,6 +91,13 @@ inline PanopticCloud runAlgorithm(const std::string& algorithm, const LabelledCl
   return out;
 }
 
+/// The algorithm's rule by itself, with the survey's settings: no class sizes, no refinement.
+inline PanopticCloud runRule(const std::string& algorithm, const LabelledCloud& cloud, ParameterMap parameters = {})
+{
+  parameters.merge(surveyParameters(algorithm));
+  return runAlgorithm(algorithm, cloud, parameters);
+}
+
 /// The same partition with numbers by first occurrence; 0 stays 0.
 inline std::vector<std::uint32_t> canonical(const std::vector<std::uint32_t>& ids)
 {

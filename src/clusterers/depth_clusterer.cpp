@@ -40,7 +40,8 @@ void DepthClusterer::link(const ThingScan& scan, std::uint32_t i, std::uint32_t 
 
   const float dx = far->x - near->x, dy = far->y - near->y, dz = far->z - near->z;
   const float squared_distance = dx * dx + dy * dy + dz * dz;
-  if (squared_distance > max_squared_distance_) return;
+  const float link_distance = scan.linkDistance(i, j);
+  if (squared_distance > max_squared_distance_ || squared_distance >= link_distance * link_distance) return;
   const float cx = far->y * dz - far->z * dy, cy = far->z * dx - far->x * dz, cz = far->x * dy - far->y * dx;
   const float dot = far->x * dx + far->y * dy + far->z * dz;  // >= 0: `far` is the farther
   if (cx * cx + cy * cy + cz * cz > squared_tan_theta_ * dot * dot || squared_distance == 0.0F) sets_.unite(i, j);

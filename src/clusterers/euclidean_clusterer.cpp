@@ -5,6 +5,7 @@
 #include <pcl/search/kdtree.h>
 #include <pcl/segmentation/extract_clusters.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <tuple>
@@ -37,6 +38,14 @@ Cloud::Ptr EuclideanClusterer::representatives(const ThingScan& scan, std::size_
   return cloud;
 }
 
+double EuclideanClusterer::tolerance(const ThingScan& scan, std::size_t group) const
+{
+  double distance = config_.distance_m > 0.0 ? config_.distance_m : std::numeric_limits<double>::infinity();
+  for (const std::uint32_t* i = groups_.begin(group); i != groups_.end(group); ++i)
+    distance = std::min<double>(distance, scan.linkDistance(*i, *i));
+  return distance;
+}
+
 void EuclideanClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)
 {
   component.resize(scan.size());
@@ -52,7 +61,7 @@ void EuclideanClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_
     pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
     extraction.setInputCloud(cloud);
     extraction.setSearchMethod(tree);
-    extraction.setClusterTolerance(config_.distance_m);
+    extraction.setClusterTolerance(tolerance(scan, group));
     extraction.setMinClusterSize(1);
     extraction.setMaxClusterSize(std::numeric_limits<int>::max());
     std::vector<pcl::PointIndices> clusters;

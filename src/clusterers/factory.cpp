@@ -1,5 +1,6 @@
 #include "lidar_panoptic_clustering/clusterers/factory.h"
 
+#include "lidar_panoptic_clustering/clusterers/birds_eye_clusterer.h"
 #include "lidar_panoptic_clustering/clusterers/depth_clusterer.h"
 #include "lidar_panoptic_clustering/clusterers/euclidean_clusterer.h"
 #include "lidar_panoptic_clustering/clusterers/scan_line_run_clusterer.h"
@@ -49,10 +50,9 @@ Entry entry(const std::string& name)
 const std::vector<Entry>& entries()
 {
   static const std::vector<Entry> list = {
-      entry<EuclideanClusterer>("euclidean"),
-      entry<SupervoxelClusterer>("supervoxel"),
-      entry<DepthClusterer>("depth"),
-      entry<ScanLineRunClusterer>("scan_line_run"),
+      entry<EuclideanClusterer>("euclidean"), entry<SupervoxelClusterer>("supervoxel"),
+      entry<DepthClusterer>("depth"),         entry<ScanLineRunClusterer>("scan_line_run"),
+      entry<BirdsEyeClusterer>("birds_eye"),
   };
   return list;
 }
@@ -79,6 +79,14 @@ std::vector<std::string> algorithmNames()
 std::vector<ParameterInfo> algorithmParameters(const std::string& algorithm)
 {
   return find(algorithm).describe();
+}
+
+ParameterMap surveyParameters(const std::string& algorithm)
+{
+  ParameterMap parameters = {
+      {"link_distance_scale", 100.0}, {"bridge_distance_m", 0.0}, {"split", false}, {"merge", false}, {"vote", false}};
+  if (algorithm == "euclidean" || algorithm == "birds_eye") parameters["distance_m"] = 0.5;
+  return parameters;
 }
 
 Algorithm makeAlgorithm(const std::string& algorithm, const ParameterMap& parameters)

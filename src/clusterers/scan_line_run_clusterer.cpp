@@ -16,6 +16,14 @@ float squaredDistance(const A& a, const B& b)
   return dx * dx + dy * dy + dz * dz;
 }
 
+/// Whether two points are closer than `limit` and than both classes' link distance.
+template <class Point>
+bool areClose(const Point& a, const Point& b, float limit)
+{
+  const float distance = std::min({limit, a.link_distance, b.link_distance});
+  return squaredDistance(a, b) < distance * distance;
+}
+
 /// Squared distance of two intervals' nearest ends, 0 where they overlap.
 float squaredGap(float a_min, float a_max, float b_min, float b_max)
 {
@@ -35,8 +43,8 @@ int windowOf(const ThingPoint& p, float distance, float column_angle, int max_wi
 ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : config_(config)
 {
   validateParameters(config);
-  squared_run_distance_ = static_cast<float>(config.run_distance_m * config.run_distance_m);
-  squared_line_distance_ = static_cast<float>(config.line_distance_m * config.line_distance_m);
+  run_distance_ = static_cast<float>(config.run_distance_m);
+  line_distance_ = static_cast<float>(config.line_distance_m);
 }
 
 void ScanLineRunClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)
@@ -64,14 +72,18 @@ void ScanLineRunClusterer::sortByLink(const ThingScan& scan)
   for (std::size_t slot = 0; slot < slots; ++slot) slot_begin_[slot + 1] += slot_begin_[slot];
 
   points_.resize(scan.size());
-  const auto distance = static_cast<float>(config_.line_distance_m);
   for (std::uint32_t row = 0; row < scan.rows; ++row)
     for (std::uint32_t i = scan.line_begin[row]; i < scan.line_begin[row + 1]; ++i)
     {
       const ThingPoint& p = scan.points[i];
       points_[slot_begin_[row * scan.link_count + scan.link[i]]++] = {
-          p.x, p.y, p.z, static_cast<int>(p.column), windowOf(p, distance, scan.column_angle, config_.max_window_px),
-          i};
+          p.x,
+          p.y,
+          p.z,
+          static_cast<int>(p.column),
+          windowOf(p, line_distance_, scan.column_angle, config_.max_window_px),
+          i,
+          scan.class_link_distance[scan.class_index[i]]};
     }
   // filling moved every beginning to the next slot's
   for (std::size_t slot = slots; slot > 0; --slot) slot_begin_[slot] = slot_begin_[slot - 1];
@@ -90,7 +102,7 @@ void ScanLineRunClusterer::findRuns(const ThingScan& scan)
     for (std::uint32_t i = slot_begin_[slot]; i < slot_begin_[slot + 1]; ++i)
     {
       const Point& p = points_[i];
-      if (i == slot_begin_[slot] || !(squaredDistance(p, points_[i - 1]) < squared_run_distance_))
+      if (i == slot_begin_[slot] || !areClose(p, points_[i - 1], run_distance_))
         runs_.push_back({i, i, p.column, p.column, 0, {p.x, p.y, p.z}, {p.x, p.y, p.z}});
       Run& run = runs_.back();
       run.end = i + 1;
@@ -111,7 +123,7 @@ void ScanLineRunClusterer::findRuns(const ThingScan& scan)
     if (slot_run_[slot] == slot_run_[slot + 1]) continue;
     const std::uint32_t first = slot_run_[slot], last = slot_run_[slot + 1] - 1;
     const Point &next = points_[runs_[first].begin], &previous = points_[runs_[last].end - 1];
-    if (squaredDistance(previous, next) < squared_run_distance_) sets_.unite(first, last);
+    if (areClose(previous, next, run_distance_)) sets_.unite(first, last);
   }
 }
 
@@ -145,7 +157,7 @@ bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int 
   float squared_gap = 0.0F;
   for (int axis = 0; axis < 3; ++axis)
     squared_gap += squaredGap(upper.min[axis], upper.max[axis], lower.min[axis], lower.max[axis]);
-  if (!(squared_gap < squared_line_distance_)) return false;
+  if (!(squared_gap < line_distance_ * line_distance_)) return false;
 
   std::uint32_t right = lower.begin;  // the first point of the lower run at or right of the upper point's column
   for (std::uint32_t i = upper.begin; i < upper.end; ++i)
@@ -154,11 +166,11 @@ bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int 
     while (right < lower.end && points_[right].column + shift < p.column) ++right;
     if (!(squaredGap(p.x, p.x, lower.min[0], lower.max[0]) + squaredGap(p.y, p.y, lower.min[1], lower.max[1]) +
               squaredGap(p.z, p.z, lower.min[2], lower.max[2]) <
-          squared_line_distance_))
+          line_distance_ * line_distance_))
       continue;
 
     const auto close = [&](const Point& q)
-    { return std::abs(q.column + shift - p.column) <= q.window && squaredDistance(p, q) < squared_line_distance_; };
+    { return std::abs(q.column + shift - p.column) <= q.window && areClose(p, q, line_distance_); };
     for (std::uint32_t j = right; j < lower.end && points_[j].column + shift - p.column <= p.window; ++j)
       if (close(points_[j])) return true;
     for (std::uint32_t j = right; j > lower.begin && p.column - points_[j - 1].column - shift <= p.window; --j)

@@ -5,6 +5,7 @@
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <filesystem>
 #include <fstream>
 #include <sstream>
 #include <stdexcept>
@@ -90,6 +91,7 @@ YAML::Node parseYaml(const std::string& yaml, const std::string& source)
 }  // namespace
 
 ClassTable ClassTable::parse(const std::string& yaml, const std::string& source)
+try
 {
   const YAML::Node root = parseYaml(yaml, source);
   if (!root.IsMap() || !root["classes"] || !root["classes"].IsSequence())
@@ -128,6 +130,10 @@ ClassTable ClassTable::parse(const std::string& yaml, const std::string& source)
   if (table.size() == 1) throw std::invalid_argument(source + ": the list 'classes' is empty");
   return table;
 }
+catch (const YAML::Exception& error)
+{
+  throw std::invalid_argument(source + ": " + error.what());
+}
 
 ClassTable ClassTable::load(const std::string& name_or_path)
 {
@@ -137,7 +143,7 @@ ClassTable ClassTable::load(const std::string& name_or_path)
   std::ifstream file(name_or_path);
   std::stringstream text;
   text << file.rdbuf();
-  if (!file.is_open() || file.bad())
+  if (!std::filesystem::is_regular_file(name_or_path) || !file.is_open() || file.bad())
   {
     std::string known;
     for (const auto& name : shippedNames()) known += ", " + name;

@@ -27,7 +27,8 @@ FramePipeline::FramePipeline(std::shared_ptr<const ClassTable> table, const Pipe
                              std::unique_ptr<Clusterer> clusterer)
     : table_(std::move(table)),
       selection_(config.selection),
-      refinement_(config.refinement),
+      refinement_(table_, config.refinement),
+      vote_(config.refinement.vote),
       clusterer_(std::move(clusterer))
 {
 }
@@ -35,7 +36,8 @@ FramePipeline::FramePipeline(std::shared_ptr<const ClassTable> table, const Pipe
 void FramePipeline::reconfigure(const PipelineConfig& config, std::unique_ptr<Clusterer> clusterer)
 {
   selection_ = config.selection;
-  refinement_ = Refinement(config.refinement);
+  refinement_ = Refinement(table_, config.refinement);
+  vote_ = config.refinement.vote;
   clusterer_ = std::move(clusterer);
 }
 
@@ -80,8 +82,11 @@ void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
     {
       const std::uint32_t id = instances_.id[i];
       if (id == 0) continue;
-      line[things_.points[i].column].instance = id;
-      line[things_.points[i].column].rgb = colors[id - 1];
+      PanopticPoint& to = line[things_.points[i].column];
+      to.instance = id;
+      to.rgb = colors[id - 1];
+      const ClassIndex voted = votedClass(id, things_.class_index[i]);
+      if (voted != things_.class_index[i]) to.label = (*table_)[voted].ids[0];
     }
   }
   times_.paint_ms = stopwatch.lap();

@@ -82,7 +82,7 @@ std::string toChoice(const std::string& name, const ParameterValue& value, const
   const auto* held = std::get_if<std::string>(&value);
   if (held != nullptr && (choices.empty() || std::find(choices.begin(), choices.end(), *held) != choices.end()))
     return *held;
-  std::string expected = "one of";
+  std::string expected = choices.empty() ? "text" : "one of";
   for (const auto& choice : choices) expected += " '" + choice + "'";
   fail(name, expected, value);
 }

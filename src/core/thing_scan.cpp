@@ -87,6 +87,10 @@ void selectThings(const LabelledCloud& cloud, const ClassTable& table, const Sel
 
   const auto max_squared_range = static_cast<float>(config.max_range_m * config.max_range_m);
   const auto keys = linkKeys(table, classPolicyFromName(config.class_policy), scan.link_count);
+  scan.class_link_distance.resize(table.size());
+  for (std::size_t c = 0; c < table.size(); ++c)
+    scan.class_link_distance[c] =
+        static_cast<float>(config.link_distance_scale) * table[static_cast<ClassIndex>(c)].link_distance_m;
   scan.class_count = static_cast<std::uint32_t>(table.size());
   scan.rows = cloud.height, scan.columns = cloud.width, scan.full_turn = config.full_turn;
   scan.points.clear(), scan.link.clear(), scan.class_index.clear(), scan.unknown_labels.clear();

@@ -45,7 +45,8 @@ po::options_description describeOptions()
       "semantics", text("DIR"),
       "folder that holds sequences/SS/predictions, a network's classes; otherwise the ground truth's");
   options.add_options()("algorithms", text("A,B"),
-                        "algorithms to run; otherwise all, with the survey's settings (supervoxel twice)");
+                        "algorithms to run; otherwise all (supervoxel twice, without and with normals)");
+  options.add_options()("survey", "the settings of Zhao et al. 2021: no class sizes, no refinement");
   options.add_options()("set", list("A.P=V,V ..")->multitoken()->composing(),
                         "sets parameter P of algorithm A; several values, or several parameters, give a row each");
   options.add_options()("jobs", number(1),
@@ -105,7 +106,7 @@ BenchmarkSettings readSettings(const po::variables_map& given)
   if (given.count("class-table") != 0) settings.class_table = textOf(given, "class-table");
   std::vector<std::string> algorithms;
   if (given.count("algorithms") != 0) algorithms = splitAtCommas(textOf(given, "algorithms"), "--algorithms");
-  settings.rows = makeRows(algorithms, listOf(given, "set"));
+  settings.rows = makeRows(algorithms, listOf(given, "set"), given.count("survey") != 0);
   settings.output = textOf(given, "output");
   settings.jobs = numberOf(given, "jobs", 1, 1024);
   readShard(textOf(given, "shard"), settings);

@@ -9,7 +9,7 @@ struct DepthConfig
 {
   double theta_deg = 10.0;      ///< smallest angle between the line of sight and the line through both points
   int max_gap_px = 9;           ///< neighbours are at most this many pixels apart
-  double max_distance_m = 0.0;  ///< and at most this far in space; 0: no such cap
+  double max_distance_m = 0.0;  ///< and at most this far in space; 0: only the classes' link distance
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -26,7 +26,8 @@ struct DepthConfig
 /// A pixel's neighbours are, up, down, left and right, the next linkable thing point at most max_gap_px pixels away;
 /// pixels that hold none are skipped. Neighbours A (the farther) and B, seen under the angle a, are one object when
 /// beta = atan2(|B| sin a, |A| - |B| cos a) > theta, written without trigonometry as |A x D| > tan(theta) (A . D) with
-/// D = A - B. Equal points are one object. On a full turn the last column neighbours the first.
+/// D = A - B, and they are closer than their link distance. Equal points are one object. On a full turn the last column
+/// neighbours the first.
 ///
 /// Linear in the thing points.
 class DepthClusterer : public Clusterer

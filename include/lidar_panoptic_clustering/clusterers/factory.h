@@ -10,12 +10,15 @@
 
 namespace lidar_panoptic_clustering
 {
-/// The algorithms' names: "euclidean", "supervoxel", "depth", "scan_line_run".
+/// The algorithms' names: "euclidean", "supervoxel", "depth", "scan_line_run", "birds_eye".
 std::vector<std::string> algorithmNames();
 
 /// The parameters of an algorithm and of the pipeline around it, with defaults and ranges.
 /// Throws std::invalid_argument on an unknown name.
 std::vector<ParameterInfo> algorithmParameters(const std::string& algorithm);
+
+/// What makes an algorithm the one of Zhao et al. 2021: no class sizes, no refinement.
+ParameterMap surveyParameters(const std::string& algorithm);
 
 /// What FramePipeline needs: the configuration around the clusterer, and the clusterer.
 struct Algorithm

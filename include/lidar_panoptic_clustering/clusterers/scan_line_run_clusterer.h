@@ -25,11 +25,11 @@ struct ScanLineRunConfig
 /// Scan-line run clustering (Zermas et al., "Fast Segmentation of 3D Point Clouds: A Paradigm on LiDAR Data for
 /// Autonomous Vehicle Applications", ICRA 2017, section IV; settings of Zhao et al. 2021).
 ///
-/// A run is a chain of linkable thing points of one scan line, each closer than run_distance_m to the one before,
-/// whatever lies between them; on a full turn the last point of a line is followed by the first. Two runs at most
-/// max_line_gap lines apart are one object when two linkable points of theirs are closer than line_distance_m and lie
-/// within each other's window: asin(min(1, line_distance_m / horizontal range)) of azimuth either side, in columns and
-/// rounded up, at most max_window_px.
+/// A run is a chain of linkable thing points of one scan line, each closer than run_distance_m (and the link distance)
+/// to the one before, whatever lies between them; on a full turn the last point of a line is followed by the first. Two
+/// runs at most max_line_gap lines apart are one object when two linkable points of theirs are closer than
+/// line_distance_m (and the link distance) and lie within each other's window: asin(min(1, line_distance_m / horizontal
+/// range)) of azimuth either side, in columns and rounded up, at most max_window_px.
 ///
 /// Runs that are one object already are not compared again, so that a scan costs little more than its runs' overlaps;
 /// at the most points x 2 max_line_gap x max_window_px comparisons.
@@ -50,6 +50,7 @@ private:
     int column;
     int window;           ///< columns searched either side
     std::uint32_t thing;  ///< index in the ThingScan
+    float link_distance;  ///< of its class [m]
   };
 
   /// A chain of points of one scan line and one link key, by column: [begin, end) of points_.
@@ -68,7 +69,7 @@ private:
   bool anyPairClose(const Run& upper, const Run& lower, int shift) const;
 
   ScanLineRunConfig config_;
-  float squared_run_distance_, squared_line_distance_;
+  float run_distance_, line_distance_;
 
   // A slot is a scan line and a link key: row * link_count + link.
   std::vector<Point> points_;              ///< by slot, then column

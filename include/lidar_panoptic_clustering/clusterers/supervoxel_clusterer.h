@@ -1,9 +1,9 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/clusterers/link_groups.h"
-#include "lidar_panoptic_clustering/clusterers/voxel_index.h"
 #include "lidar_panoptic_clustering/core/clusterer.h"
 #include "lidar_panoptic_clustering/core/disjoint_sets.h"
+#include "lidar_panoptic_clustering/core/voxel_index.h"
 
 namespace lidar_panoptic_clustering
 {

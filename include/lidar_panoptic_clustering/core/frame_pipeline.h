@@ -44,8 +44,15 @@ public:
   void segment(const LabelledCloud& in);
 
   /// Fills `out` with the points of `in`, the cloud given to segment() last, in the same order, with instance ids and
-  /// colours; header, width, height and coordinates are the same bit for bit.
+  /// colours; header, width, height and coordinates are the same bit for bit. Labels change only where an instance's
+  /// vote went against a point's class: to the canonical id of the instance's class.
   void paint(const LabelledCloud& in, PanopticCloud& out);
+
+  /// The class that the vote gives a point of instance `id` (1..n) and class `own`.
+  ClassIndex votedClass(std::uint32_t id, ClassIndex own) const
+  {
+    return vote_ ? instances_.objects[id - 1].class_index : own;
+  }
 
   /// Of the scan processed last.
   const ThingScan& things() const { return things_; }
@@ -57,6 +64,7 @@ private:
   std::shared_ptr<const ClassTable> table_;
   SelectionConfig selection_;
   Refinement refinement_;
+  bool vote_;
   std::unique_ptr<Clusterer> clusterer_;
   InstanceColors colors_;
 

@@ -1,8 +1,12 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/box_splitting.h"
+#include "lidar_panoptic_clustering/core/class_bridging.h"
+#include "lidar_panoptic_clustering/core/part_merging.h"
 #include "lidar_panoptic_clustering/core/thing_scan.h"
 
 #include <cstdint>
+#include <memory>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -25,11 +29,21 @@ struct Instances
 
 struct RefinementConfig
 {
-  int min_points = 1;  ///< smaller instances get id 0; 1 keeps all
+  double bridge_distance_m = 0.3;  ///< objects of one group of classes that are closer are one; 0: never
+  bool split = true;               ///< objects too big for their class are cut where they hang together least
+  double size_margin = 1.3;        ///< factor on the class's usual size above which an object is too big
+  bool merge = true;               ///< parts that together still fit one object of their class are joined
+  bool vote = true;                ///< all points of an instance get the class of most of them
+  int min_points = 1;              ///< smaller instances get id 0; 1 keeps all
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
+    visitor("bridge_distance_m", self.bridge_distance_m, 0.0, 10.0);
+    visitor("split", self.split);
+    visitor("size_margin", self.size_margin, 1.0, 10.0);
+    visitor("merge", self.merge);
+    visitor("vote", self.vote);
     visitor("min_points", self.min_points, 1, 10000);
   }
 };
@@ -38,14 +52,33 @@ struct RefinementConfig
 class Refinement
 {
 public:
-  explicit Refinement(RefinementConfig config) : config_(config) {}
+  /// Throws std::invalid_argument on a value outside its range.
+  Refinement(std::shared_ptr<const ClassTable> table, const RefinementConfig& config);
 
-  /// Ids are 1..n by the first pixel in row-major order. Linear in the thing points.
+  /// Bridge, split what is too big, merge parts, number. Ids are 1..n by the first pixel in row-major order.
+  /// Linear in the thing points, but for what splitting and merging take.
   void refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances);
 
 private:
+  using Things = std::vector<std::uint32_t>;
+
+  void gather(const ThingScan& scan, const std::vector<std::uint32_t>& part_of_thing);
+  void bridge(const ThingScan& scan);
+  bool isTooBig(const RefinedObject& object) const;
+  void splitTooBig(const ThingScan& scan);
+  void split(const ThingScan& scan, const Things& whole);
+  void measure(const ThingScan& scan, const Things& things, RefinedObject& object);
+  void number(const ThingScan& scan, Instances& instances);
+
+  std::shared_ptr<const ClassTable> table_;
   RefinementConfig config_;
-  std::vector<std::uint32_t> size_of_, id_of_;  ///< by component
-  std::vector<std::uint32_t> votes_;            ///< instance x class
+  std::vector<RefinedObject> objects_;
+  std::vector<std::uint32_t> object_of_thing_;
+  std::vector<std::uint32_t> object_of_part_;
+  std::vector<std::uint32_t> votes_;  ///< object x class
+  ClassBridging bridging_;
+  BoxSplitter splitter_;
+  PartMerger merger_;
+  std::vector<std::uint32_t> whole_of_, size_of_, id_of_;  ///< by object
 };
 }  // namespace lidar_panoptic_clustering

@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ struct ThingPoint
 /// The thing points of an organised scan, scan line by scan line, each line by column: what clusterers work on.
 ///
 /// `points`, `link` and `class_index` run in parallel, in row-major order of the pixels. Two points are linkable when
-/// their `link` is the same.
+/// their `link` is the same; no algorithm takes points for neighbours that are linkDistance() apart or more.
 struct ThingScan
 {
   std::uint32_t rows = 0;     ///< scan lines
@@ -47,9 +48,17 @@ struct ThingScan
   std::uint32_t link_count = 0;           ///< link < link_count
   std::uint32_t class_count = 0;          ///< class_index < class_count
 
+  std::vector<float> class_link_distance;  ///< by class index: the widest gap between points of one object [m]
+
   std::vector<std::uint32_t> unknown_labels;  ///< up to 16 raw ids of this scan that the class table does not name
 
   std::size_t size() const { return points.size(); }
+
+  /// The widest gap between points i and j of one object [m]: of two classes the narrower.
+  float linkDistance(std::uint32_t i, std::uint32_t j) const
+  {
+    return std::min(class_link_distance[class_index[i]], class_link_distance[class_index[j]]);
+  }
 };
 
 struct SelectionConfig
@@ -57,6 +66,7 @@ struct SelectionConfig
   double max_range_m = 300.0;  ///< returns beyond count as no return
   bool full_turn = true;       ///< the scan closes on itself; false for a sector
   std::string class_policy = "class";
+  double link_distance_scale = 1.0;  ///< factor on the class table's link distances
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -64,6 +74,7 @@ struct SelectionConfig
     visitor("max_range_m", self.max_range_m, 1.0, 10000.0);
     visitor("full_turn", self.full_turn);
     visitor("class_policy", self.class_policy, classPolicyNames());
+    visitor("link_distance_scale", self.link_distance_scale, 0.05, 100.0);
   }
 };
 

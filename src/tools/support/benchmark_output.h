@@ -95,11 +95,12 @@ private:
          << "class table: " << settings.class_table << "\n"
          << "columns: " << settings.columns << "\n"
          << "algorithm: " << row.algorithm << "\n";
+    const ParameterMap parameters = row.allParameters();
     for (const ParameterInfo& info : algorithmParameters(row.algorithm))
     {
-      const auto given = row.parameters.find(info.name);
+      const auto given = parameters.find(info.name);
       std::visit([&](const auto& value) { text << info.name << ": " << std::boolalpha << value << "\n"; },
-                 given == row.parameters.end() ? info.value : given->second);
+                 given == parameters.end() ? info.value : given->second);
     }
     return text.str();
   }

@@ -20,6 +20,14 @@ struct RowSettings
   std::string name;  ///< "depth", or with what was set "depth theta_deg=5"
   std::string algorithm;
   ParameterMap parameters;  ///< text, as given
+  bool survey = false;      ///< on top of surveyParameters() instead of the defaults
+
+  ParameterMap allParameters() const
+  {
+    ParameterMap all = parameters;
+    if (survey) all.merge(surveyParameters(algorithm));
+    return all;
+  }
 };
 
 struct BenchmarkSettings
@@ -65,15 +73,15 @@ inline Sweep parseSweep(const std::string& text)
           splitAtCommas(text.substr(equals + 1), "--set " + text.substr(0, equals))};
 }
 
-/// The survey's settings of all algorithms: the defaults, and for supervoxel a second row with normals.
-inline std::vector<RowSettings> surveyRows()
+/// All algorithms, and for supervoxel a second row with normals, as the survey has them.
+inline std::vector<RowSettings> allRows()
 {
   std::vector<RowSettings> rows;
   for (const std::string& name : algorithmNames())
   {
-    rows.push_back({name, name, {}});
+    rows.push_back({name, name, {}, false});
     if (name == "supervoxel")
-      rows.push_back({name + " normal_weight=0.5", name, {{"normal_weight", std::string("0.5")}}});
+      rows.push_back({name + " normal_weight=0.5", name, {{"normal_weight", std::string("0.5")}}, false});
   }
   return rows;
 }
@@ -109,7 +117,7 @@ inline std::vector<RowSettings> nameRows(std::vector<RowSettings> rows)
   std::vector<RowSettings> result;
   for (RowSettings& row : rows)
   {
-    row.name = row.algorithm;
+    row.name = row.algorithm + (row.survey ? " survey" : "");
     for (const auto& [parameter, value] : row.parameters)
       row.name += " " + parameter + "=" + std::get<std::string>(value);
     const auto same = [&](const RowSettings& other) { return other.name == row.name; };
@@ -118,20 +126,21 @@ inline std::vector<RowSettings> nameRows(std::vector<RowSettings> rows)
   return result;
 }
 
-/// The rows of `--algorithms` (none: the survey's) and all `--set`, several of one algorithm combined. Throws
-/// std::invalid_argument on unknown algorithms, parameters and values out of range, with what there is.
+/// The rows of `--algorithms` (none: all), with the survey's settings or the defaults, and all `--set`, several of one
+/// algorithm combined. Throws std::invalid_argument on unknown algorithms, parameters and values out of range, with
+/// what there is.
 inline std::vector<RowSettings> makeRows(const std::vector<std::string>& algorithms,
-                                         const std::vector<std::string>& sets)
+                                         const std::vector<std::string>& sets, bool survey = false)
 {
-  std::vector<RowSettings> rows = algorithms.empty() ? surveyRows() : std::vector<RowSettings>{};
-  for (const std::string& name : algorithms) rows.push_back({name, name, {}});
-  for (const RowSettings& row : rows) makeAlgorithm(row.algorithm);
+  std::vector<RowSettings> rows = algorithms.empty() ? allRows() : std::vector<RowSettings>{};
+  for (const std::string& name : algorithms) rows.push_back({name, name, {}, false});
+  for (RowSettings& row : rows) makeAlgorithm(row.algorithm), row.survey = survey;
   for (const std::string& text : sets) rows = applySweep(rows, parseSweep(text));
   for (const RowSettings& row : rows)
   {
     try
     {
-      makeAlgorithm(row.algorithm, row.parameters);
+      makeAlgorithm(row.algorithm, row.allParameters());
     }
     catch (const std::invalid_argument& error)
     {

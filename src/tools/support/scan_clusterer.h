@@ -23,7 +23,7 @@ public:
   {
     for (const RowSettings& row : settings.rows)
     {
-      Algorithm made = makeAlgorithm(row.algorithm, row.parameters);
+      Algorithm made = makeAlgorithm(row.algorithm, row.allParameters());
       lanes_.push_back({std::make_unique<FramePipeline>(table, made.pipeline, std::move(made.clusterer)), false});
     }
   }
@@ -51,7 +51,15 @@ public:
 
     pixelInstances(lane.pipeline->things(), lane.pipeline->instances(), instance_of_pixel_);
     hidden_points_.label(scan_->points, scan_->classes, projection_, instance_of_pixel_, instance_);
-    encodeLabels(scan_->classes, instance_, *table_, labels);
+    classes_ = scan_->classes;
+    const std::size_t instances = lane.pipeline->instances().count();  // larger ids are hidden points' own
+    for (std::size_t k = 0; k < classes_.size(); ++k)
+    {
+      if (instance_[k] == 0 || instance_[k] > instances) continue;
+      const ClassIndex own = table_->find(classes_[k]), voted = lane.pipeline->votedClass(instance_[k], own);
+      if (voted != own) classes_[k] = (*table_)[voted].ids[0];
+    }
+    encodeLabels(classes_, instance_, *table_, labels);
   }
 
 private:
@@ -67,6 +75,6 @@ private:
   std::vector<Lane> lanes_;  ///< by row
   const BenchmarkScan* scan_ = nullptr;
   Projection projection_;
-  std::vector<std::uint32_t> instance_of_pixel_, instance_;
+  std::vector<std::uint32_t> instance_of_pixel_, instance_, classes_;
 };
 }  // namespace lidar_panoptic_clustering

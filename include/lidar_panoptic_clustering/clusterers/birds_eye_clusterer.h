@@ -1,0 +1,43 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/clusterer.h"
+#include "lidar_panoptic_clustering/core/planar_cells.h"
+
+namespace lidar_panoptic_clustering
+{
+struct BirdsEyeConfig
+{
+  double distance_m = 0.0;  ///< points closer than this, and than the link distance, are one object; 0: the latter only
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor("distance_m", self.distance_m, 0.0, 10.0);
+  }
+};
+
+/// Components of the graph "closer than distance_m (at most the link distance, of a link key's classes the narrowest)
+/// in bird's-eye view" among linkable points, exact. Height plays no part, so that windows, bumpers and beams far apart
+/// do not part an object; class-wise graphs in bird's-eye view are ALPINE's idea (Sautier et al. 2025).
+///
+/// Works on a grid (see PlanarCells): linear in the points at usual densities. Rows and columns
+/// are not looked at: the cloud need not be organised.
+class BirdsEyeClusterer : public Clusterer
+{
+public:
+  using Config = BirdsEyeConfig;
+
+  /// Throws std::invalid_argument on a value outside its range.
+  explicit BirdsEyeClusterer(const BirdsEyeConfig& config = {});
+
+  void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+
+  const PlanarCells& cells() const { return cells_; }
+
+private:
+  BirdsEyeConfig config_;
+  std::vector<float> distance_of_link_;
+  PlanarCells cells_;  ///< a layer a link key
+  std::vector<std::uint32_t> component_of_cell_;
+};
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,38 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/footprint.h"
+#include "lidar_panoptic_clustering/core/planar_cells.h"
+#include "lidar_panoptic_clustering/core/thing_scan.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// Parts one object where its points hang together least in bird's-eye view.
+///
+/// The link distance is lowered by tenths of `reach`, from nine down to two, until two or more sizeable parts are left:
+/// a tenth of the object's points each, and at least ten. What is not in one of them joins the nearest of them
+/// (outline to outline).
+///
+/// At the most eight times linear in the points; keeps its memory.
+class BoxSplitter
+{
+public:
+  /// `things`: the object's points, indices into the scan. Returns the number of parts, 1 where it hangs together; then
+  /// `part` holds each thing's part, 0..n-1, parallel to `things`.
+  std::uint32_t split(const ThingScan& scan, const std::vector<std::uint32_t>& things, float reach,
+                      std::vector<std::uint32_t>& part);
+
+private:
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+
+  std::uint32_t countSizeable(std::uint32_t fewest);
+  void joinRest(const ThingScan& scan, const std::vector<std::uint32_t>& things, std::uint32_t parts);
+
+  PlanarCells cells_;
+  std::vector<std::uint32_t> component_of_cell_;
+  std::vector<std::uint32_t> size_of_, part_of_;  ///< by component
+  std::vector<Footprint> outline_;                ///< by component
+};
+}  // namespace lidar_panoptic_clustering

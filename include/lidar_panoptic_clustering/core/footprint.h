@@ -1,0 +1,74 @@
+#pragma once
+
+#include <array>
+#include <limits>
+
+namespace lidar_panoptic_clustering
+{
+/// A rectangle's sides [m], length >= width.
+struct RectangleSize
+{
+  float length = 0.0F, width = 0.0F;
+};
+
+struct PlanarPoint
+{
+  float x, y;
+};
+
+/// An object's outline in bird's-eye view: its farthest points in the eight directions 45 degrees apart.
+///
+/// The corners of any rectangle are among them, whatever its heading, so that sizes of box-like objects come out exact;
+/// a circle's come out up to 8 % small. Constant size, and two outlines join without their points.
+class Footprint
+{
+public:
+  void add(float x, float y)
+  {
+    const float along[kAxes] = {x, y, x + y, x - y};
+    for (int k = 0; k < kAxes; ++k)
+    {
+      if (along[k] > max_[k]) max_[k] = along[k], point_[k] = {x, y};
+      if (along[k] < min_[k]) min_[k] = along[k], point_[kAxes + k] = {x, y};
+    }
+  }
+
+  void add(const Footprint& other)
+  {
+    for (const PlanarPoint& p : other.point_) add(p.x, p.y);
+  }
+
+  float minX() const { return min_[0]; }
+  float maxX() const { return max_[0]; }
+  float minY() const { return min_[1]; }
+  float maxY() const { return max_[1]; }
+
+  /// Of the rectangle of least area about the outline. The footprint holds a point.
+  RectangleSize smallestRectangle() const;
+
+  /// Whether a rectangle about the outline is at most `length` x `width` [m].
+  bool fits(float length, float width) const;
+
+  /// Nearest points of two outlines (convex polygons); where they overlap, the two are the same.
+  struct Gap
+  {
+    PlanarPoint from, to;
+    float squaredDistance() const { return (from.x - to.x) * (from.x - to.x) + (from.y - to.y) * (from.y - to.y); }
+  };
+  Gap gapTo(const Footprint& other) const;
+
+  /// Whether the segment from a to b meets the outline.
+  bool isCrossedBy(const PlanarPoint& a, const PlanarPoint& b) const;
+
+private:
+  static constexpr int kAxes = 4;  // x, y and the two diagonals
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+
+  /// The distinct corners, counter-clockwise; returns how many.
+  int corners(std::array<PlanarPoint, 2 * kAxes>& polygon) const;
+
+  float max_[kAxes] = {-kFar, -kFar, -kFar, -kFar};
+  float min_[kAxes] = {kFar, kFar, kFar, kFar};
+  std::array<PlanarPoint, 2 * kAxes> point_{};  ///< farthest along each axis, then against it
+};
+}  // namespace lidar_panoptic_clustering

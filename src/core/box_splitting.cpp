@@ -1,0 +1,78 @@
+#include "lidar_panoptic_clustering/core/box_splitting.h"
+
+#include <algorithm>
+#include <tuple>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr std::uint32_t kFewestPoints = 10;
+constexpr std::uint32_t kSmallestShare = 10;  // one in ten
+}  // namespace
+
+std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::vector<std::uint32_t>& things, float reach,
+                                 std::vector<std::uint32_t>& part)
+{
+  const std::uint32_t fewest = std::max(kFewestPoints, static_cast<std::uint32_t>(things.size()) / kSmallestShare);
+  if (things.size() < 2 * kFewestPoints) return 1;
+  for (int tenths = 9; tenths >= 2; --tenths)
+  {
+    const float distance = 0.1F * static_cast<float>(tenths) * reach;
+    cells_.clear(things.size());
+    for (std::uint32_t k = 0; k < things.size(); ++k)
+      cells_.add(scan.points[things[k]].x, scan.points[things[k]].y, 0, distance, k);
+    cells_.close();
+    cells_.findComponents({distance}, component_of_cell_);
+    const std::uint32_t parts = countSizeable(fewest);
+    if (parts < 2) continue;
+    joinRest(scan, things, parts);
+    part.resize(things.size());
+    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
+      cells_.forEach(cell, [&](std::uint32_t k) { part[k] = part_of_[component_of_cell_[cell]]; });
+    return parts;
+  }
+  return 1;
+}
+
+/// Numbers the components that are large enough; the others have no part yet.
+std::uint32_t BoxSplitter::countSizeable(std::uint32_t fewest)
+{
+  size_of_.assign(cells_.size(), 0);
+  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
+    cells_.forEach(cell, [&](std::uint32_t) { ++size_of_[component_of_cell_[cell]]; });
+  part_of_.assign(cells_.size(), kNone);
+  std::uint32_t parts = 0;
+  for (std::uint32_t c = 0; c < cells_.size(); ++c)
+    if (size_of_[c] >= fewest) part_of_[c] = parts++;
+  return parts;
+}
+
+void BoxSplitter::joinRest(const ThingScan& scan, const std::vector<std::uint32_t>& things, std::uint32_t parts)
+{
+  outline_.assign(cells_.size(), Footprint());
+  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
+    cells_.forEach(cell,
+                   [&](std::uint32_t k)
+                   {
+                     const ThingPoint& p = scan.points[things[k]];
+                     outline_[component_of_cell_[cell]].add(p.x, p.y);
+                   });
+  std::vector<std::uint32_t> sizeable(parts);
+  for (std::uint32_t c = 0; c < cells_.size(); ++c)
+    if (part_of_[c] != kNone) sizeable[part_of_[c]] = c;
+  for (std::uint32_t c = 0; c < cells_.size(); ++c)
+  {
+    if (size_of_[c] == 0 || part_of_[c] != kNone) continue;
+    const auto gap = [&](std::uint32_t k)
+    {
+      const Footprint& other = outline_[sizeable[k]];
+      return std::make_tuple(outline_[c].gapTo(other).squaredDistance(), other.minX(), other.minY());
+    };
+    std::uint32_t nearest = 0;
+    for (std::uint32_t k = 1; k < parts; ++k)
+      if (gap(k) < gap(nearest)) nearest = k;
+    part_of_[c] = nearest;
+  }
+}
+}  // namespace lidar_panoptic_clustering
