@@ -11,8 +11,8 @@ TEST_F(PanopticBenchmark, AllRowsOnAllSequences)
 {
   ASSERT_EQ(benchmark("--report r.json"), 0) << err();
   const auto r = report("r.json");
-  const std::vector<std::string> rows = {"euclidean", "supervoxel", "supervoxel normal_weight=0.5", "depth",
-                                         "scan_line_run", "birds_eye"};
+  const std::vector<std::string> rows = {"euclidean", "supervoxel",    "supervoxel normal_weight=0.5",
+                                         "depth",     "scan_line_run", "birds_eye"};
   EXPECT_EQ(r.at("rows").get<std::vector<std::string>>(), rows);
   for (const std::string& row : rows)
   {
@@ -31,15 +31,15 @@ TEST_F(PanopticBenchmark, AllRowsOnAllSequences)
 
 TEST_F(PanopticBenchmark, SweepGivesARowAValue)
 {
-  ASSERT_EQ(benchmark("--algorithms euclidean --set euclidean.distance_m=0.5,3 euclidean.min_points=1,61 "
+  ASSERT_EQ(benchmark("--survey --algorithms euclidean --set euclidean.distance_m=0.5,3 euclidean.min_points=1,61 "
                       "--report r.json"),
             0)
       << err();
   const auto r = report("r.json");
   ASSERT_EQ(r.at("rows").size(), 4U);
-  EXPECT_EQ(r.at("rows").at(0), "euclidean distance_m=0.5 min_points=1");
-  EXPECT_EQ(r.at("rows").at(1), "euclidean distance_m=0.5 min_points=61");
-  const auto& merged = r.at("quality").at("rows").at("euclidean distance_m=3 min_points=1");
+  EXPECT_EQ(r.at("rows").at(0), "euclidean survey distance_m=0.5 min_points=1");
+  EXPECT_EQ(r.at("rows").at(1), "euclidean survey distance_m=0.5 min_points=61");
+  const auto& merged = r.at("quality").at("rows").at("euclidean survey distance_m=3 min_points=1");
   EXPECT_EQ(merged.at("true_objects").at("merged"), 12);
   EXPECT_EQ(merged.at("pq_th_present"), 0.0);
 }
@@ -70,7 +70,7 @@ TEST_F(PanopticBenchmark, JobsGiveTheSameBytes)
     EXPECT_EQ(read(file.path()), read(folder_ / "out" / fs::relative(file.path(), folder_ / "first")));
     ++files;
   }
-  EXPECT_EQ(files, 30U);
+  EXPECT_EQ(files, 36U);
 }
 
 TEST_F(PanopticBenchmark, ShardsMergeToTheWhole)
@@ -152,7 +152,8 @@ TEST_F(PanopticBenchmark, InterruptEndsWithTheFiguresSoFar)
 
 TEST_F(PanopticBenchmark, Plots)
 {
-  ASSERT_EQ(benchmark("--algorithms euclidean,depth --set euclidean.distance_m=0.5,3 --plot charts"), 0) << err();
+  ASSERT_EQ(benchmark("--survey --algorithms euclidean,depth --set euclidean.distance_m=0.5,3 --plot charts"), 0)
+      << err();
   for (const std::string name : {"quality", "objects", "pq_by_class", "time", "time_by_points", "scan_03_000000"})
     EXPECT_GT(read(folder_ / "charts" / (name + ".png")).size(), 1000U) << name;
 }
