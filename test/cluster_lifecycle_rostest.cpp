@@ -59,7 +59,7 @@ TEST_F(ClusterLifecycle, LoadsIntoAnExistingManagerUnloadsAndReloads)
     ASSERT_TRUE(client.load(names.back(), type)) << algorithm;
   }
   EXPECT_FALSE(client.load(names[0], kClusterNodelets[0].second)) << "two nodelets of one name";
-  EXPECT_EQ(client.count(), 4U);
+  EXPECT_EQ(client.count(), kClusterNodelets.size());
 
   for (int round = 0; round < 2; ++round)
   {
@@ -79,7 +79,7 @@ TEST_F(ClusterLifecycle, LoadsIntoAnExistingManagerUnloadsAndReloads)
       EXPECT_FALSE(client.unload(names[i]));
       EXPECT_TRUE(client.load(names[i], type));
     }
-    EXPECT_EQ(client.count(), 4U);
+    EXPECT_EQ(client.count(), kClusterNodelets.size());
   }
   for (const auto& name : names) EXPECT_TRUE(client.unload(name));
   EXPECT_EQ(client.count(), 0U);
