@@ -42,6 +42,7 @@ missing_packages() {
 }
 
 install_dependencies() {
+  ensure_localhost
   local required missing as_root=()
   mapfile -t required < <(required_packages)
   command -v dpkg-query > /dev/null ||
@@ -63,6 +64,16 @@ install_dependencies() {
     fail "apt-get could not install the packages; its output is in $log"
   fi
   rm -f "$log"
+}
+
+# roslaunch and rostest look up "localhost", which a minimal system may not know.
+ensure_localhost() {
+  ! getent hosts localhost > /dev/null || return 0
+  local as_root=()
+  [ "$(id -u)" -eq 0 ] || as_root=(sudo)
+  echo "Adding localhost to /etc/hosts"
+  echo '127.0.0.1 localhost' | "${as_root[@]}" tee -a /etc/hosts > /dev/null ||
+    fail "this system does not know the name localhost; add the line '127.0.0.1 localhost' to /etc/hosts"
 }
 
 # As many compilers as there are processors, but no more than fit into the memory: the largest file takes 1.7 GB, or

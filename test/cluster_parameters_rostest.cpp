@@ -140,7 +140,7 @@ protected:
 TEST_F(ClusterParameters, OfTheLaunchFileCountFromTheFirstScan)
 {
   const std::string name = newName();
-  ros::param::set(name + "/distance_m", 3);  // an integer where a double is expected, as launch files have it
+  ros::param::set(name + "/link_distance_scale", 5);  // an integer where a double is expected, as launch files have it
   ASSERT_TRUE(tryLoad(name, "EuclideanClusterNodelet"));
   const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
@@ -155,7 +155,7 @@ TEST_F(ClusterParameters, ReconfiguringTakesEffectWithTheNextScan)
   Probe<PanopticCloud> output(name + "/output");
   waitForSubscriber(input);
   EXPECT_EQ(instancesFound(output, input), 2U);
-  EXPECT_EQ(reconfigure(name, "distance_m", 3.0).at("distance_m"), ParameterValue(3.0));
+  EXPECT_EQ(reconfigure(name, "link_distance_scale", 5.0).at("link_distance_scale"), ParameterValue(5.0));
   EXPECT_EQ(instancesFound(output, input), 1U);
   EXPECT_EQ(reconfigure(name, "distance_m", 0.5).at("distance_m"), ParameterValue(0.5));
   EXPECT_EQ(instancesFound(output, input), 2U);
@@ -172,10 +172,10 @@ TEST_F(ClusterParameters, ValueOutOfRangeIsClamped)
   const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
   waitForSubscriber(input);
-  EXPECT_EQ(reconfigure(name, "distance_m", 99.0).at("distance_m"), ParameterValue(10.0));
+  EXPECT_EQ(reconfigure(name, "link_distance_scale", 999.0).at("link_distance_scale"), ParameterValue(100.0));
   EXPECT_EQ(instancesFound(output, input), 1U);
-  EXPECT_EQ(reconfigure(name, "distance_m", -1.0).at("distance_m"), ParameterValue(0.01));
-  EXPECT_GT(instancesFound(output, input), 10U);  // the points are 0.1 m apart
+  EXPECT_EQ(reconfigure(name, "link_distance_scale", -1.0).at("link_distance_scale"), ParameterValue(0.05));
+  EXPECT_GT(instancesFound(output, input), 1U);
 }
 
 TEST_F(ClusterParameters, ChoiceThatDoesNotExistChangesNothing)
@@ -191,13 +191,13 @@ TEST_F(ClusterParameters, ChoiceThatDoesNotExistChangesNothing)
             ParameterValue(std::string("group")));
   EXPECT_NE(log.waitFor("not reconfigured").find("'nonsense'"), std::string::npos);
   EXPECT_EQ(instancesFound(output, input), 2U);
-  EXPECT_EQ(reconfigure(name, "distance_m", 3.0).at("class_policy"), ParameterValue(std::string("group")));
+  EXPECT_EQ(reconfigure(name, "link_distance_scale", 5.0).at("class_policy"), ParameterValue(std::string("group")));
   EXPECT_EQ(instancesFound(output, input), 1U);
 }
 
 TEST_F(ClusterParameters, NodeletRefusesToLoadWithOneItCannotUse)
 {
-  expectRefused("distance_m", 99.0, {"distance_m", "0.01 to 10", "99"});
+  expectRefused("distance_m", 99.0, {"distance_m", "from 0 to 10", "99"});
   expectRefused("distance_m", std::string("wide"), {"distance_m", "expected a number", "a string wide"});
   expectRefused("min_points", 0, {"min_points", "from 1 to 10000", "0"});
   expectRefused("min_points", 2.5, {"min_points", "expected an integer", "2.5"});
