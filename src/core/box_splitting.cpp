@@ -11,23 +11,23 @@ constexpr std::uint32_t kFewestPoints = 10;
 constexpr std::uint32_t kSmallestShare = 10;  // one in ten
 }  // namespace
 
-std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::vector<std::uint32_t>& things, float reach,
+std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach,
                                  std::vector<std::uint32_t>& part)
 {
-  const std::uint32_t fewest = std::max(kFewestPoints, static_cast<std::uint32_t>(things.size()) / kSmallestShare);
-  if (things.size() < 2 * kFewestPoints) return 1;
+  const std::uint32_t fewest = std::max(kFewestPoints, count / kSmallestShare);
+  if (count < 2 * kFewestPoints) return 1;
   for (int tenths = 9; tenths >= 2; --tenths)
   {
     const float distance = 0.1F * static_cast<float>(tenths) * reach;
-    cells_.clear(things.size());
-    for (std::uint32_t k = 0; k < things.size(); ++k)
+    cells_.clear(count);
+    for (std::uint32_t k = 0; k < count; ++k)
       cells_.add(scan.points[things[k]].x, scan.points[things[k]].y, 0, distance, k);
     cells_.close();
     cells_.findComponents({distance}, component_of_cell_);
     const std::uint32_t parts = countSizeable(fewest);
     if (parts < 2) continue;
     joinRest(scan, things, parts);
-    part.resize(things.size());
+    part.resize(count);
     for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
       cells_.forEach(cell, [&](std::uint32_t k) { part[k] = part_of_[component_of_cell_[cell]]; });
     return parts;
@@ -48,7 +48,7 @@ std::uint32_t BoxSplitter::countSizeable(std::uint32_t fewest)
   return parts;
 }
 
-void BoxSplitter::joinRest(const ThingScan& scan, const std::vector<std::uint32_t>& things, std::uint32_t parts)
+void BoxSplitter::joinRest(const ThingScan& scan, const std::uint32_t* things, std::uint32_t parts)
 {
   outline_.assign(cells_.size(), Footprint());
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
@@ -58,15 +58,15 @@ void BoxSplitter::joinRest(const ThingScan& scan, const std::vector<std::uint32_
                      const ThingPoint& p = scan.points[things[k]];
                      outline_[component_of_cell_[cell]].add(p.x, p.y);
                    });
-  std::vector<std::uint32_t> sizeable(parts);
+  sizeable_.resize(parts);
   for (std::uint32_t c = 0; c < cells_.size(); ++c)
-    if (part_of_[c] != kNone) sizeable[part_of_[c]] = c;
+    if (part_of_[c] != kNone) sizeable_[part_of_[c]] = c;
   for (std::uint32_t c = 0; c < cells_.size(); ++c)
   {
     if (size_of_[c] == 0 || part_of_[c] != kNone) continue;
     const auto gap = [&](std::uint32_t k)
     {
-      const Footprint& other = outline_[sizeable[k]];
+      const Footprint& other = outline_[sizeable_[k]];
       return std::make_tuple(outline_[c].gapTo(other).squaredDistance(), other.minX(), other.minY());
     };
     std::uint32_t nearest = 0;

@@ -36,44 +36,83 @@ void Refinement::refine(const ThingScan& scan, const std::vector<std::uint32_t>&
   number(scan, instances);
 }
 
-/// Makes an object of each part that occurs, numbered by first point; a part is any number below the scan's size.
-void Refinement::gather(const ThingScan& scan, const std::vector<std::uint32_t>& part_of_thing)
+/// Makes an object of each component, numbered by first point. Neighbours on a scan line mostly share theirs, so the
+/// points are taken run by run.
+void Refinement::gather(const ThingScan& scan, const std::vector<std::uint32_t>& component)
 {
-  object_of_part_.assign(scan.size(), kNone);
-  object_of_thing_.resize(scan.size());
+  const auto count = static_cast<std::uint32_t>(scan.size());
+  object_of_component_.assign(count, kNone);
+  object_of_thing_.resize(count);
   objects_.clear();
-  for (std::size_t i = 0; i < scan.size(); ++i)
+  votes_.clear();
+  for (std::uint32_t begin = 0, end = 0; begin < count; begin = end)
   {
-    std::uint32_t& object = object_of_part_[part_of_thing[i]];
+    while (end < count && component[end] == component[begin]) ++end;
+    std::uint32_t& object = object_of_component_[component[begin]];
     if (object == kNone)
     {
       object = static_cast<std::uint32_t>(objects_.size());
       objects_.emplace_back();
+      votes_.resize(votes_.size() + scan.class_count, 0);
     }
-    object_of_thing_[i] = object;
-    ++objects_[object].point_count;
-    objects_[object].footprint.add(scan.points[i].x, scan.points[i].y);
+    std::fill(object_of_thing_.begin() + begin, object_of_thing_.begin() + end, object);
+    addRun(scan, begin, end, objects_[object], &votes_[std::size_t{object} * scan.class_count]);
   }
+  for (std::uint32_t k = 0; k < objects_.size(); ++k) elect(k, scan.class_count);
+}
 
-  votes_.assign(objects_.size() * scan.class_count, 0);
-  for (std::size_t i = 0; i < scan.size(); ++i) ++votes_[object_of_thing_[i] * scan.class_count + scan.class_index[i]];
-  for (std::size_t k = 0; k < objects_.size(); ++k)
+void Refinement::addRun(const ThingScan& scan, std::uint32_t begin, std::uint32_t end, RefinedObject& object,
+                        std::uint32_t* votes)
+{
+  object.point_count += end - begin;
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+  for (std::uint32_t i = begin; i < end; ++i)
   {
-    const auto begin = votes_.begin() + static_cast<std::ptrdiff_t>(k * scan.class_count);
-    objects_[k].class_index = static_cast<ClassIndex>(std::max_element(begin, begin + scan.class_count) - begin);
+    const ThingPoint& p = scan.points[i];
+    object.footprint.add(p.x, p.y);
+    x += p.x, y += p.y, z += p.z;
+    ++votes[scan.class_index[i]];
   }
+  object.sum_x += x, object.sum_y += y, object.sum_z += z;
+}
+
+/// The object's class by its row of votes_; the lower index wins a tie.
+void Refinement::elect(std::uint32_t object, std::uint32_t class_count)
+{
+  const auto begin = votes_.begin() + static_cast<std::ptrdiff_t>(std::size_t{object} * class_count);
+  objects_[object].class_index = static_cast<ClassIndex>(std::max_element(begin, begin + class_count) - begin);
 }
 
 void Refinement::bridge(const ThingScan& scan)
 {
   bridging_.join(scan, *table_, static_cast<float>(config_.bridge_distance_m), objects_, object_of_thing_, whole_of_);
-  bool joined = false;
-  for (std::uint32_t k = 0; k < whole_of_.size(); ++k) joined = joined || whole_of_[k] != k;
-  if (!joined) return;
-  std::vector<std::uint32_t>& part = size_of_;  // free until number()
-  part.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i) part[i] = whole_of_[object_of_thing_[i]];
-  gather(scan, part);
+  std::uint32_t wholes = 0;
+  for (std::uint32_t k = 0; k < whole_of_.size(); ++k)
+  {
+    const std::uint32_t whole = whole_of_[k];  // the first of its objects: never above k, and renumbered before
+    whole_of_[k] = whole == k ? wholes++ : whole_of_[whole];
+    moveInto(k, whole_of_[k], whole == k, scan.class_count);
+  }
+  if (wholes == objects_.size()) return;
+  objects_.resize(wholes);
+  for (std::uint32_t k = 0; k < wholes; ++k) elect(k, scan.class_count);
+  for (std::uint32_t& object : object_of_thing_) object = whole_of_[object];
+}
+
+/// Adds object `from` to object `to` <= `from`, or puts it in its place where it is the first there.
+void Refinement::moveInto(std::uint32_t from, std::uint32_t to, bool is_first, std::uint32_t class_count)
+{
+  if (from == to) return;
+  const std::uint32_t* votes = &votes_[std::size_t{from} * class_count];
+  std::uint32_t* sum = &votes_[std::size_t{to} * class_count];
+  if (is_first)
+  {
+    objects_[to] = objects_[from];
+    std::copy(votes, votes + class_count, sum);
+    return;
+  }
+  objects_[to].add(objects_[from]);
+  for (std::uint32_t c = 0; c < class_count; ++c) sum[c] += votes[c];
 }
 
 bool Refinement::isTooBig(const RefinedObject& object) const
@@ -85,86 +124,88 @@ bool Refinement::isTooBig(const RefinedObject& object) const
 
 void Refinement::splitTooBig(const ThingScan& scan)
 {
-  std::vector<Things> too_big;
-  std::vector<std::uint32_t> place(objects_.size(), kNone);
+  open_.clear();
+  slot_of_.assign(objects_.size(), kNone);
+  std::uint32_t count = 0;
   for (std::uint32_t k = 0; k < objects_.size(); ++k)
   {
     if (!isTooBig(objects_[k])) continue;
-    place[k] = static_cast<std::uint32_t>(too_big.size());
-    too_big.emplace_back();
+    slot_of_[k] = static_cast<std::uint32_t>(open_.size());
+    open_.push_back({count, count});
+    count += objects_[k].point_count;
   }
-  if (too_big.empty()) return;
+  if (open_.empty()) return;
+  things_.resize(count);
   for (std::uint32_t i = 0; i < scan.size(); ++i)
-    if (place[object_of_thing_[i]] != kNone) too_big[place[object_of_thing_[i]]].push_back(i);
-  for (const Things& things : too_big) split(scan, things);
-}
-
-/// Splits an object and what comes of it until all fits or hangs together.
-void Refinement::split(const ThingScan& scan, const Things& whole)
-{
-  std::vector<Things> open = {whole};
-  std::vector<std::uint32_t> part;
-  while (!open.empty())
+    if (const std::uint32_t slot = slot_of_[object_of_thing_[i]]; slot != kNone) things_[open_[slot].end++] = i;
+  while (!open_.empty())
   {
-    const Things things = std::move(open.back());
-    open.pop_back();
-    const std::uint32_t object = object_of_thing_[things[0]];
-    if (!isTooBig(objects_[object])) continue;
-    const std::uint32_t parts =
-        splitter_.split(scan, things, scan.class_link_distance[objects_[object].class_index], part);
-    if (parts < 2) continue;
-    std::vector<Things> things_of(parts);
-    for (std::size_t k = 0; k < things.size(); ++k) things_of[part[k]].push_back(things[k]);
-    for (std::uint32_t p = 0; p < parts; ++p)
-    {
-      const std::uint32_t fresh = p == 0 ? object : static_cast<std::uint32_t>(objects_.size());
-      if (p > 0) objects_.emplace_back();
-      for (const std::uint32_t i : things_of[p]) object_of_thing_[i] = fresh;
-      measure(scan, things_of[p], objects_[fresh]);
-      open.push_back(std::move(things_of[p]));
-    }
+    const Range range = open_.back();
+    open_.pop_back();
+    split(scan, range);
   }
 }
 
-/// Size, outline and class of the object that consists of `things`.
-void Refinement::measure(const ThingScan& scan, const Things& things, RefinedObject& object)
+/// Splits the object whose points are a range of things_; parts that are still too big are opened for the next turn.
+void Refinement::split(const ThingScan& scan, Range range)
 {
-  object = RefinedObject();
-  votes_.assign(scan.class_count, 0);
-  for (const std::uint32_t i : things)
+  const std::uint32_t object = object_of_thing_[things_[range.begin]];
+  const std::uint32_t parts = splitter_.split(scan, &things_[range.begin], range.end - range.begin,
+                                              scan.class_link_distance[objects_[object].class_index], part_of_);
+  if (parts < 2) return;
+
+  const auto first_fresh = static_cast<std::uint32_t>(objects_.size());
+  objects_.resize(objects_.size() + parts - 1);
+  votes_.resize(objects_.size() * scan.class_count);
+  const auto object_of_part = [&](std::uint32_t part) { return part == 0 ? object : first_fresh + part - 1; };
+  for (std::uint32_t part = 0; part < parts; ++part)
   {
-    object.footprint.add(scan.points[i].x, scan.points[i].y);
-    ++votes_[scan.class_index[i]];
+    objects_[object_of_part(part)] = RefinedObject();
+    std::fill_n(&votes_[std::size_t{object_of_part(part)} * scan.class_count], scan.class_count, 0U);
   }
-  object.point_count = static_cast<std::uint32_t>(things.size());
-  object.class_index = static_cast<ClassIndex>(std::max_element(votes_.begin(), votes_.end()) - votes_.begin());
+  sorted_.resize(range.end - range.begin);
+  for (std::uint32_t k = range.begin; k < range.end; ++k)
+  {
+    const std::uint32_t i = things_[k], mine = object_of_part(part_of_[k - range.begin]);
+    object_of_thing_[i] = mine;
+    addRun(scan, i, i + 1, objects_[mine], &votes_[std::size_t{mine} * scan.class_count]);
+  }
+  std::uint32_t begin = 0;
+  for (std::uint32_t part = 0; part < parts; ++part)
+  {
+    std::uint32_t end = begin;
+    for (std::uint32_t k = range.begin; k < range.end; ++k)
+      if (part_of_[k - range.begin] == part) sorted_[end++] = things_[k];
+    elect(object_of_part(part), scan.class_count);
+    if (isTooBig(objects_[object_of_part(part)])) open_.push_back({range.begin + begin, range.begin + end});
+    begin = end;
+  }
+  std::copy(sorted_.begin(), sorted_.end(), things_.begin() + range.begin);
 }
 
 /// Ids by first pixel for the wholes that are large enough.
 void Refinement::number(const ThingScan& scan, Instances& instances)
 {
-  size_of_.assign(objects_.size(), 0);
-  for (std::size_t k = 0; k < objects_.size(); ++k) size_of_[whole_of_[k]] += objects_[k].point_count;
-  id_of_.assign(objects_.size(), 0);
+  for (std::uint32_t k = 0; k < objects_.size(); ++k)
+    if (whole_of_[k] != k) objects_[whole_of_[k]].addPoints(objects_[k]);
+  id_of_.assign(objects_.size(), kNone);
   instances.id.resize(scan.size());
   instances.objects.clear();
   for (std::size_t i = 0; i < scan.size(); ++i)
   {
     const std::uint32_t whole = whole_of_[object_of_thing_[i]];
-    if (id_of_[whole] == 0 && size_of_[whole] >= static_cast<std::uint32_t>(config_.min_points))
-    {
-      instances.objects.push_back({size_of_[whole], objects_[whole].class_index, 0.0F, 0.0F, 0.0F});
-      id_of_[whole] = static_cast<std::uint32_t>(instances.objects.size());
-    }
-    const std::uint32_t id = instances.id[i] = id_of_[whole];
-    if (id == 0) continue;
-    auto& object = instances.objects[id - 1];
-    object.x += scan.points[i].x, object.y += scan.points[i].y, object.z += scan.points[i].z;
+    if (id_of_[whole] == kNone) id_of_[whole] = numbered(objects_[whole], instances);
+    instances.id[i] = id_of_[whole];
   }
-  for (auto& object : instances.objects)
-  {
-    const float scale = 1.0F / static_cast<float>(object.point_count);
-    object.x *= scale, object.y *= scale, object.z *= scale;
-  }
+}
+
+/// The id of an object whose first pixel has come up.
+std::uint32_t Refinement::numbered(const RefinedObject& object, Instances& instances) const
+{
+  if (object.point_count < static_cast<std::uint32_t>(config_.min_points)) return 0;
+  const float scale = 1.0F / static_cast<float>(object.point_count);
+  instances.objects.push_back(
+      {object.point_count, object.class_index, scale * object.sum_x, scale * object.sum_y, scale * object.sum_z});
+  return static_cast<std::uint32_t>(instances.objects.size());
 }
 }  // namespace lidar_panoptic_clustering

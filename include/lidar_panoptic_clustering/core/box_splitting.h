@@ -19,20 +19,21 @@ namespace lidar_panoptic_clustering
 class BoxSplitter
 {
 public:
-  /// `things`: the object's points, indices into the scan. Returns the number of parts, 1 where it hangs together; then
-  /// `part` holds each thing's part, 0..n-1, parallel to `things`.
-  std::uint32_t split(const ThingScan& scan, const std::vector<std::uint32_t>& things, float reach,
+  /// `things`: the object's `count` points, indices into the scan. Returns the number of parts, 1 where it hangs
+  /// together; else `part` holds each thing's part, 0..n-1, parallel to `things`.
+  std::uint32_t split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach,
                       std::vector<std::uint32_t>& part);
 
 private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   std::uint32_t countSizeable(std::uint32_t fewest);
-  void joinRest(const ThingScan& scan, const std::vector<std::uint32_t>& things, std::uint32_t parts);
+  void joinRest(const ThingScan& scan, const std::uint32_t* things, std::uint32_t parts);
 
   PlanarCells cells_;
   std::vector<std::uint32_t> component_of_cell_;
   std::vector<std::uint32_t> size_of_, part_of_;  ///< by component
   std::vector<Footprint> outline_;                ///< by component
+  std::vector<std::uint32_t> sizeable_;           ///< by part: its component
 };
 }  // namespace lidar_panoptic_clustering

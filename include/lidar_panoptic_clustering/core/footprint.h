@@ -26,11 +26,9 @@ public:
   void add(float x, float y)
   {
     const float along[kAxes] = {x, y, x + y, x - y};
-    for (int k = 0; k < kAxes; ++k)
-    {
-      if (along[k] > max_[k]) max_[k] = along[k], point_[k] = {x, y};
-      if (along[k] < min_[k]) min_[k] = along[k], point_[kAxes + k] = {x, y};
-    }
+    bool is_outside = false;  // hardly any point is: one branch instead of eight
+    for (int k = 0; k < kAxes; ++k) is_outside |= (along[k] > max_[k]) | (along[k] < min_[k]);
+    if (is_outside) extend(along, {x, y});
   }
 
   void add(const Footprint& other)
@@ -42,6 +40,19 @@ public:
   float maxX() const { return max_[0]; }
   float minY() const { return min_[1]; }
   float maxY() const { return max_[1]; }
+
+  /// Whether the gap to another outline can be below `distance` [m]: false is certain, true is a guess from the extents
+  /// along the four axes.
+  bool mayBeCloser(const Footprint& other, float distance) const
+  {
+    constexpr float kSquareRoot2 = 1.41422F;  // the diagonals' unit is 1 / sqrt(2) m; rounded up
+    for (int k = 0; k < kAxes; ++k)
+    {
+      const float reach = k < 2 ? distance : kSquareRoot2 * distance;
+      if (min_[k] - other.max_[k] >= reach || other.min_[k] - max_[k] >= reach) return false;
+    }
+    return true;
+  }
 
   /// Of the rectangle of least area about the outline. The footprint holds a point.
   RectangleSize smallestRectangle() const;
@@ -63,6 +74,15 @@ public:
 private:
   static constexpr int kAxes = 4;  // x, y and the two diagonals
   static constexpr float kFar = std::numeric_limits<float>::infinity();
+
+  void extend(const float (&along)[kAxes], const PlanarPoint& point)
+  {
+    for (int k = 0; k < kAxes; ++k)
+    {
+      if (along[k] > max_[k]) max_[k] = along[k], point_[k] = point;
+      if (along[k] < min_[k]) min_[k] = along[k], point_[kAxes + k] = point;
+    }
+  }
 
   /// The distinct corners, counter-clockwise; returns how many.
   int corners(std::array<PlanarPoint, 2 * kAxes>& polygon) const;

@@ -60,25 +60,35 @@ public:
   void refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances);
 
 private:
-  using Things = std::vector<std::uint32_t>;
+  struct Range
+  {
+    std::uint32_t begin, end;
+  };
 
-  void gather(const ThingScan& scan, const std::vector<std::uint32_t>& part_of_thing);
+  void gather(const ThingScan& scan, const std::vector<std::uint32_t>& component);
+  static void addRun(const ThingScan& scan, std::uint32_t begin, std::uint32_t end, RefinedObject& object,
+                     std::uint32_t* votes);
+  void elect(std::uint32_t object, std::uint32_t class_count);
   void bridge(const ThingScan& scan);
+  void moveInto(std::uint32_t from, std::uint32_t to, bool is_first, std::uint32_t class_count);
   bool isTooBig(const RefinedObject& object) const;
   void splitTooBig(const ThingScan& scan);
-  void split(const ThingScan& scan, const Things& whole);
-  void measure(const ThingScan& scan, const Things& things, RefinedObject& object);
+  void split(const ThingScan& scan, Range range);
   void number(const ThingScan& scan, Instances& instances);
+  std::uint32_t numbered(const RefinedObject& object, Instances& instances) const;
 
   std::shared_ptr<const ClassTable> table_;
   RefinementConfig config_;
   std::vector<RefinedObject> objects_;
-  std::vector<std::uint32_t> object_of_thing_;
-  std::vector<std::uint32_t> object_of_part_;
   std::vector<std::uint32_t> votes_;  ///< object x class
+  std::vector<std::uint32_t> object_of_thing_, object_of_component_;
   ClassBridging bridging_;
   BoxSplitter splitter_;
   PartMerger merger_;
-  std::vector<std::uint32_t> whole_of_, size_of_, id_of_;  ///< by object
+  std::vector<std::uint32_t> whole_of_, id_of_;  ///< by object
+
+  std::vector<std::uint32_t> things_;  ///< of the objects too big for their class, object by object
+  std::vector<Range> open_;            ///< of things_: what is still to be split
+  std::vector<std::uint32_t> slot_of_, part_of_, sorted_;
 };
 }  // namespace lidar_panoptic_clustering

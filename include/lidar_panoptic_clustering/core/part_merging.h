@@ -15,7 +15,19 @@ struct RefinedObject
 {
   ClassIndex class_index = kUnknownClass;
   std::uint32_t point_count = 0;
+  float sum_x = 0.0F, sum_y = 0.0F, sum_z = 0.0F;  ///< of its points [m]
   Footprint footprint;
+
+  void addPoints(const RefinedObject& other)
+  {
+    point_count += other.point_count;
+    sum_x += other.sum_x, sum_y += other.sum_y, sum_z += other.sum_z;
+  }
+  void add(const RefinedObject& other)
+  {
+    addPoints(other);
+    footprint.add(other.footprint);
+  }
 };
 
 /// Joins parts of one object that occlusion or a class border has parted.
