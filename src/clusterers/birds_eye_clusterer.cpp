@@ -7,6 +7,11 @@
 
 namespace lidar_panoptic_clustering
 {
+namespace
+{
+constexpr std::uint32_t kAbsent = 0xFFFFFFFF;
+}  // namespace
+
 BirdsEyeClusterer::BirdsEyeClusterer(const BirdsEyeConfig& config) : config_(config)
 {
   validateParameters(config);
@@ -16,9 +21,13 @@ void BirdsEyeClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t
 {
   const float limit =
       config_.distance_m > 0.0 ? static_cast<float>(config_.distance_m) : std::numeric_limits<float>::infinity();
+  link_of_class_.assign(scan.class_count, kAbsent);
+  for (std::uint32_t i = 0; i < scan.size(); ++i) link_of_class_[scan.class_index[i]] = scan.link[i];
   distance_of_link_.assign(scan.link_count, limit);
-  for (std::uint32_t i = 0; i < scan.size(); ++i)
-    distance_of_link_[scan.link[i]] = std::min(distance_of_link_[scan.link[i]], scan.linkDistance(i, i));
+  for (std::size_t c = 0; c < link_of_class_.size(); ++c)
+    if (link_of_class_[c] != kAbsent)
+      distance_of_link_[link_of_class_[c]] =
+          std::min(distance_of_link_[link_of_class_[c]], scan.class_link_distance[c]);
 
   cells_.clear(scan.size());
   for (std::uint32_t i = 0; i < scan.size(); ++i)
@@ -27,7 +36,6 @@ void BirdsEyeClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t
 
   cells_.findComponents(distance_of_link_, component_of_cell_);
   component.resize(scan.size());
-  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-    cells_.forEach(cell, [&](std::uint32_t thing) { component[thing] = component_of_cell_[cell]; });
+  for (std::uint32_t i = 0; i < scan.size(); ++i) component[i] = component_of_cell_[cells_.cellOf(i)];
 }
 }  // namespace lidar_panoptic_clustering

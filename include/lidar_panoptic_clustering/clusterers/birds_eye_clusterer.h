@@ -20,8 +20,8 @@ struct BirdsEyeConfig
 /// in bird's-eye view" among linkable points, exact. Height plays no part, so that windows, bumpers and beams far apart
 /// do not part an object; class-wise graphs in bird's-eye view are ALPINE's idea (Sautier et al. 2025).
 ///
-/// Works on a grid (see PlanarCells): linear in the points at usual densities. Rows and columns
-/// are not looked at: the cloud need not be organised.
+/// Works on a grid (see PlanarCells): linear in the points, n log n where cells are hard to tell apart. Rows and
+/// columns are not looked at: the cloud need not be organised.
 class BirdsEyeClusterer : public Clusterer
 {
 public:
@@ -36,6 +36,7 @@ public:
 
 private:
   BirdsEyeConfig config_;
+  std::vector<std::uint32_t> link_of_class_;  ///< by class index, of the classes that occur
   std::vector<float> distance_of_link_;
   PlanarCells cells_;  ///< a layer a link key
   std::vector<std::uint32_t> component_of_cell_;

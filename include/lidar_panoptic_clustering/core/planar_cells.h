@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/disjoint_sets.h"
 #include "lidar_panoptic_clustering/core/voxel_index.h"
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -35,10 +36,11 @@ public:
     for (std::uint32_t k = ranges_[cell].begin; k < ranges_[cell].end; ++k) visit(points_[k].thing);
   }
   std::uint32_t firstThing(std::uint32_t cell) const { return points_[ranges_[cell].begin].thing; }
+  /// The cell of the point that was the k-th to be added.
+  std::uint32_t cellOf(std::size_t k) const { return cell_of_added_[k]; }
 
-  /// Whether a point of one cell is closer than `distance` to one of the other. Halves both, box against box: about
-  /// linear in their points where the cells are clearly near or far, at the worst (dense walls at just that distance)
-  /// their number to the power 1.5.
+  /// Whether a point of one cell is closer than `distance` to one of the other; `distance` is what both cells' points
+  /// were added with. Linear in their points, n log n for those of a cell at its first difficult comparison.
   bool areCloser(std::uint32_t cell_a, std::uint32_t cell_b, float distance);
 
   /// The components of "closer than the layer's distance" within each layer, by cell: each cell's value is the first
@@ -62,15 +64,32 @@ private:
   {
     float min_x, max_x, min_y, max_y;
   };
+  /// A disc's upper edge, above those of all other discs from `from` to the next arc's.
+  struct Arc
+  {
+    double u, v;  ///< the disc's centre, v the height
+    double from;
+  };
 
-  bool anyCloser(Range a, Range b, float squared_distance);
-  Box boxOf(Range range) const;
-  Range halve(Range& range, const Box& box);
+  bool isAnyPairCloser(Range a, Range b, float squared_distance);
+  bool isGreedyPairCloser(Range a, Range b, const Box& box_b, float squared_distance);
+  bool reachesOver(std::uint32_t low, std::uint32_t high, bool along_y, float distance);
+  void drawEnvelope(std::uint32_t cell, bool along_y, double distance);
+  const Point& nearest(Range range, float x, float y);
+  const Box& boxOf(std::uint32_t cell);
+  const Point* sorted(std::uint32_t cell, bool along_y);
 
   VoxelIndex index_;
   std::vector<Range> ranges_;  ///< by cell
   std::vector<Point> added_, points_;
   std::vector<std::uint32_t> cell_of_added_;
+  VoxelKey last_key_{};
+  std::uint32_t last_cell_ = kNone;
+
+  std::vector<Box> boxes_;                              ///< by cell; min above max until it is asked for
+  std::array<std::vector<std::uint8_t>, 2> is_sorted_;  ///< by cell: whether it is in sorted_
+  std::array<std::vector<Point>, 2> sorted_;            ///< points_, each cell's along x and along y
+  std::vector<Arc> envelope_;
   DisjointSets sets_;
   std::size_t looked_at_ = 0;
 };

@@ -19,54 +19,89 @@ struct VoxelKey
 };
 
 /// Numbers the occupied voxels 0, 1, 2 ... in order of insertion: an open-addressing hash table that keeps its memory.
+///
+/// Emptying it costs nothing: a slot counts only while it bears the present epoch.
 class VoxelIndex
 {
 public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  /// Empties the index and makes room for `capacity` voxels.
-  void reset(std::size_t capacity)
+  /// Empties the index, with room for `capacity` voxels; it grows by itself when there are more.
+  void reset(std::size_t capacity = 0)
   {
-    std::size_t slots = 16;
-    while (slots < 2 * capacity) slots *= 2;
-    slots_.assign(slots, {0, kNone});
     keys_.clear();
+    std::size_t slots = kFewestSlots;
+    while (slots < 2 * capacity) slots *= 2;
+    useSlots(slots);
   }
 
-  /// The voxel's number, a new one at its first insertion. At most `capacity` voxels may be inserted.
+  /// The voxel's number, a new one at its first insertion.
   std::uint32_t insert(const VoxelKey& key)
   {
-    Slot& slot = slots_[locate(key.packed())];
-    if (slot.number == kNone)
+    std::size_t at = locate(key.packed());
+    if (slots_[at].epoch == epoch_) return slots_[at].number;
+    if (2 * keys_.size() > mask_)
     {
-      slot = {key.packed(), static_cast<std::uint32_t>(keys_.size())};
-      keys_.push_back(key);
+      grow();
+      at = locate(key.packed());
     }
-    return slot.number;
+    slots_[at] = {key.packed(), static_cast<std::uint32_t>(keys_.size()), epoch_};
+    keys_.push_back(key);
+    return slots_[at].number;
   }
 
   /// kNone for a voxel that was not inserted.
-  std::uint32_t find(const VoxelKey& key) const { return slots_[locate(key.packed())].number; }
+  std::uint32_t find(const VoxelKey& key) const
+  {
+    const Slot& slot = slots_[locate(key.packed())];
+    return slot.epoch == epoch_ ? slot.number : kNone;
+  }
 
   const VoxelKey& operator[](std::uint32_t number) const { return keys_[number]; }
   std::size_t size() const { return keys_.size(); }
 
 private:
+  static constexpr std::size_t kFewestSlots = 64;
+
   struct Slot
   {
     std::uint64_t key;
     std::uint32_t number;
+    std::uint32_t epoch;
   };
+
+  /// Empties the first `count` slots, a power of two, and uses only those: few voxels stay close together in memory.
+  void useSlots(std::size_t count)
+  {
+    if (slots_.size() < count || epoch_ == 0xFFFFFFFF)
+    {
+      slots_.assign(count > slots_.size() ? count : slots_.size(), {0, 0, 0});
+      epoch_ = 0;
+    }
+    ++epoch_;
+    mask_ = count - 1;
+  }
+
+  void grow()
+  {
+    useSlots(2 * (mask_ + 1));
+    for (std::uint32_t number = 0; number < keys_.size(); ++number)
+    {
+      const std::uint64_t key = keys_[number].packed();
+      slots_[locate(key)] = {key, number, epoch_};
+    }
+  }
 
   std::size_t locate(std::uint64_t key) const
   {
-    const std::size_t mask = slots_.size() - 1;
-    std::size_t at = (key * 0x9E3779B97F4A7C15ULL >> 20) & mask;
-    while (slots_[at].number != kNone && slots_[at].key != key) at = (at + 1) & mask;
+    std::size_t at = (key * 0x9E3779B97F4A7C15ULL >> 20) & mask_;
+    while (slots_[at].epoch == epoch_ && slots_[at].key != key) at = (at + 1) & mask_;
     return at;
   }
 
-  std::vector<Slot> slots_;
+  std::vector<Slot> slots_ = std::vector<Slot>(kFewestSlots, Slot{0, 0, 0});
   std::vector<VoxelKey> keys_;
+  std::uint32_t epoch_ = 1;  ///< above that of every slot not in use
+  std::size_t mask_ = kFewestSlots - 1;
 };
 }  // namespace lidar_panoptic_clustering
