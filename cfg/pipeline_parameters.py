@@ -13,7 +13,12 @@ def pipeline_parameters():
         generator.const("AnyClass", str_t, "any", "Points of all thing classes"),
     ], "Which points may share an instance")
     generator.add("max_range_m", double_t, 0, "Returns beyond this range count as no return [m]", 300.0, 1.0, 10000.0)
-    generator.add("full_turn", bool_t, 0, "The last column is the first one's neighbour; false for a sector", True)
+    views = generator.enum([
+        generator.const("Auto", str_t, "auto", "Told from each scan"),
+        generator.const("FullTurn", str_t, "full_turn", "The last column is the first one's neighbour"),
+        generator.const("Sector", str_t, "sector", "The scan does not close on itself"),
+    ], "Field of view")
+    generator.add("field_of_view", str_t, 0, "Whether the scan closes on itself", "auto", edit_method=views)
     generator.add("class_policy", str_t, 0, "Which points may share an instance", "class", edit_method=policies)
     generator.add("link_distance_scale", double_t, 0, "Factor on the class table's link distances", 1.0, 0.05, 100.0)
     generator.add("bridge_distance_m", double_t, 0,

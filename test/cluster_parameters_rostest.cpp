@@ -201,7 +201,7 @@ TEST_F(ClusterParameters, NodeletRefusesToLoadWithOneItCannotUse)
   expectRefused("distance_m", std::string("wide"), {"distance_m", "expected a number", "a string wide"});
   expectRefused("min_points", 0, {"min_points", "from 1 to 10000", "0"});
   expectRefused("min_points", 2.5, {"min_points", "expected an integer", "2.5"});
-  expectRefused("full_turn", 1, {"full_turn", "expected a bool", "an integer 1"});
+  expectRefused("split", 1, {"split", "expected a bool", "an integer 1"});
   expectRefused("class_policy", std::string("nonsense"), {"class_policy", "'class' 'group' 'any'", "nonsense"});
   expectRefused("class_table", std::string("/no/such/table.yaml"), {"/no/such/table.yaml", "semantic_kitti"});
   expectRefused("class_table", 7, {"class_table", "expected a string", "an integer 7"});

@@ -17,7 +17,7 @@ LabelledPoint ahead(int column, float x = 10.0F, std::uint32_t label = kCar, flo
 
 Ids split(const std::string& algorithm, const LabelledCloud& cloud, ParameterMap parameters = {})
 {
-  parameters.emplace("full_turn", false);
+  parameters.emplace("field_of_view", std::string("sector"));
   return instancesOf(runRule(algorithm, cloud, parameters));
 }
 
@@ -78,7 +78,7 @@ TEST(Depth, columnsLinkOverOtherRows)
 TEST(Depth, turnCloses)
 {
   const LabelledCloud cloud = line({ahead(0), ahead(1, 30.0F), ahead(2)});
-  EXPECT_EQ(instancesOf(runRule("depth", cloud, {{"max_gap_px", 1}, {"full_turn", true}})), (Ids{1, 2, 1}));
+  EXPECT_EQ(instancesOf(runRule("depth", cloud, {{"max_gap_px", 1}, {"field_of_view", std::string("full_turn")}})), (Ids{1, 2, 1}));
   EXPECT_EQ(split("depth", cloud, {{"max_gap_px", 1}}), (Ids{1, 2, 3}));
 }
 

@@ -97,7 +97,7 @@ TEST_P(EveryAlgorithm, acceptsOnePointOneRowOneColumn)
     {
       const LabelledCloud cloud = randomScan(seed, rows, columns);
       expectSound(cloud, run(cloud));
-      expectSound(cloud, run(cloud, {{"full_turn", false}}));
+      expectSound(cloud, run(cloud, {{"field_of_view", std::string("sector")}}));
     }
 }
 

@@ -81,15 +81,14 @@ void ClassBridging::joinCells(const std::vector<RefinedObject>& objects, const C
     const VoxelKey key = cells_.key(cell);
     const auto object = static_cast<std::uint32_t>(key.z);
     const ClassInfo& info = table[objects[object].class_index];
-    for (int dy = -PlanarCells::kReach; dy <= PlanarCells::kReach; ++dy)
-      for (int dx = -PlanarCells::kReach; dx <= PlanarCells::kReach; ++dx)
+    for (int dy = 0; dy <= PlanarCells::kReach; ++dy)  // half of the cells around: the other half looks here
+      for (int dx = dy == 0 ? 0 : -PlanarCells::kReach; dx <= PlanarCells::kReach; ++dx)
       {
         const std::uint32_t stack = stacks_.find({key.x + dx, key.y + dy, info.group});
         if (stack == VoxelIndex::kNone) continue;
         for (std::uint32_t other = top_[stack]; other != PlanarCells::kNone; other = below_[other])
         {
           const auto other_object = static_cast<std::uint32_t>(cells_.key(other).z);
-          if (other_object >= object) continue;  // each pair once
           if (sets_.find(object) == sets_.find(other_object)) continue;
           if (cells_.areCloser(cell, other, distance)) sets_.unite(object, other_object);
         }

@@ -128,6 +128,11 @@ try
     table.classes_.push_back(std::move(info));
   }
   if (table.size() == 1) throw std::invalid_argument(source + ": the list 'classes' is empty");
+  for (const ClassIndex index : table.class_of_id_)
+  {
+    table.kind_of_id_.push_back(table[index].kind);
+    table.rgb_of_id_.push_back(table[index].rgb);
+  }
   return table;
 }
 catch (const YAML::Exception& error)

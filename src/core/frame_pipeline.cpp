@@ -70,7 +70,7 @@ void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
     to.intensity = from->intensity;
     to.label = from->label;
     to.instance = 0;
-    to.rgb = (*table_)[table_->find(from->label)].rgb;
+    to.rgb = table_->rgbOf(from->label);
     ++from;
   }
 

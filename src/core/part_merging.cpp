@@ -12,6 +12,7 @@ namespace
 constexpr float kCellM = 4.0F;       // about a car's length: most objects lie in one to four cells
 constexpr float kGapInLinks = 2.0F;  // times the class's link distance
 constexpr float kSlack = 1.3F;       // on the usual size, of parts that lie within the link distance
+constexpr float kRounding = 1.001F;  // the outlines' extents are never to exclude what their gap would not
 constexpr int kMostNeighbours = 64;
 constexpr int kMostCells = 256;  // an outline that covers more fits no class
 
@@ -88,6 +89,7 @@ void PartMerger::collectPairs(const std::vector<RefinedObject>& objects, const C
                    if (b >= a || seen_[b] == a || objects[b].class_index != objects[a].class_index) continue;
                    seen_[b] = a;
                    --left;
+                   if (!mine.mayBeCloser(objects[b].footprint, kRounding * reach)) continue;
                    const Footprint::Gap gap = mine.gapTo(objects[b].footprint);
                    if (fit(mine, objects[b].footprint, info, gap.squaredDistance()) && !isParted(objects, a, b, gap))
                      pairs_.push_back({gap.squaredDistance(), b, a});

@@ -36,33 +36,48 @@ std::array<std::uint8_t, 256> linkKeys(const ClassTable& table, ClassPolicy poli
   return keys;
 }
 
-/// Median over the scan lines of the azimuth a line spans, divided by its columns [rad]; for sectors.
-float measureColumnAngle(const LabelledCloud& cloud, float max_squared_range)
-{
-  std::vector<float> angles;
-  for (std::uint32_t row = 0; row < cloud.height; ++row)
-  {
-    const LabelledPoint* line = cloud.points.data() + static_cast<std::size_t>(row) * cloud.width;
-    std::uint32_t first = 0, last = cloud.width;
-    while (first < cloud.width && !isReturn(line[first], max_squared_range)) ++first;
-    while (last > first && !isReturn(line[last - 1], max_squared_range)) --last;
-    if (last < first + 2) continue;
-    const LabelledPoint &a = line[first], &b = line[last - 1];
-    const float turned = std::abs(std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y));
-    angles.push_back(turned / static_cast<float>(last - 1 - first));
-  }
-  if (angles.empty()) return 0.0F;
-  const auto middle = angles.begin() + static_cast<std::ptrdiff_t>(angles.size() / 2);
-  std::nth_element(angles.begin(), middle, angles.end());
-  return *middle;
-}
-
 void noteUnknown(std::vector<std::uint32_t>& labels, std::uint32_t label)
 {
   if (labels.size() < kMaxUnknownLabels && std::find(labels.begin(), labels.end(), label) == labels.end())
     labels.push_back(label);
 }
 }  // namespace
+
+const std::vector<std::string>& fieldOfViewNames()
+{
+  static const std::vector<std::string> names = {"auto", "full_turn", "sector"};
+  return names;
+}
+
+float measureColumnAngle(const LabelledCloud& cloud, float max_range_m)
+{
+  constexpr std::uint32_t kRows = 8, kSamples = 32, kWidestGap = 8;  // the latter: one in so many columns
+  constexpr int kEnough = 64;
+  const float max_squared_range = max_range_m * max_range_m;
+  const std::uint32_t row_step = std::max(1U, cloud.height / kRows), step = std::max(1U, cloud.width / kSamples);
+  double turned = 0.0, columns = 0.0;
+  int pairs = 0;
+  for (std::uint32_t row = row_step / 2; row < cloud.height; row += row_step)
+  {
+    const LabelledPoint* line = cloud.points.data() + static_cast<std::size_t>(row) * cloud.width;
+    std::uint32_t last = cloud.width;
+    double line_turned = 0.0, line_columns = 0.0;
+    for (std::uint32_t column = 0; column < cloud.width; column += step)
+    {
+      if (!isReturn(line[column], max_squared_range)) continue;
+      if (last < column && (column - last == step || (column - last) * kWidestGap <= cloud.width))
+      {
+        const LabelledPoint &a = line[last], &b = line[column];
+        line_turned += std::atan2(a.x * b.y - a.y * b.x, a.x * b.x + a.y * b.y);
+        line_columns += column - last;
+        ++pairs;
+      }
+      last = column;
+    }
+    turned += std::abs(line_turned), columns += line_columns;
+  }
+  return pairs < kEnough ? 0.0F : static_cast<float>(turned / columns);
+}
 
 const std::vector<std::string>& classPolicyNames()
 {
@@ -78,6 +93,21 @@ ClassPolicy classPolicyFromName(const std::string& name)
   return static_cast<ClassPolicy>(found - names.begin());
 }
 
+namespace
+{
+void findFieldOfView(const LabelledCloud& cloud, const SelectionConfig& config, ThingScan& scan)
+{
+  constexpr float kNearlyAll = 0.9F;
+  const auto full_turn_angle = static_cast<float>(2.0 * kPi / std::max(1U, scan.columns));
+  scan.column_angle = full_turn_angle;
+  scan.full_turn = true;
+  if (config.field_of_view == "full_turn") return;
+  const float measured = measureColumnAngle(cloud, static_cast<float>(config.max_range_m));
+  scan.full_turn = config.field_of_view == "auto" && (measured == 0.0F || measured > kNearlyAll * full_turn_angle);
+  if (!scan.full_turn) scan.column_angle = measured;
+}
+}  // namespace
+
 void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan)
 {
   const std::size_t pixels = static_cast<std::size_t>(cloud.width) * cloud.height;
@@ -92,11 +122,10 @@ void selectThings(const LabelledCloud& cloud, const ClassTable& table, const Sel
     scan.class_link_distance[c] =
         static_cast<float>(config.link_distance_scale) * table[static_cast<ClassIndex>(c)].link_distance_m;
   scan.class_count = static_cast<std::uint32_t>(table.size());
-  scan.rows = cloud.height, scan.columns = cloud.width, scan.full_turn = config.full_turn;
+  scan.rows = cloud.height, scan.columns = cloud.width;
   scan.points.clear(), scan.link.clear(), scan.class_index.clear(), scan.unknown_labels.clear();
   scan.line_begin.resize(scan.rows + 1);
-  scan.column_angle = config.full_turn ? static_cast<float>(2.0 * kPi / std::max(1U, scan.columns))
-                                       : measureColumnAngle(cloud, max_squared_range);
+  findFieldOfView(cloud, config, scan);
 
   const LabelledPoint* point = cloud.points.data();
   for (std::uint32_t row = 0; row < scan.rows; ++row)
@@ -104,13 +133,15 @@ void selectThings(const LabelledCloud& cloud, const ClassTable& table, const Sel
     scan.line_begin[row] = static_cast<std::uint32_t>(scan.points.size());
     for (std::uint32_t column = 0; column < scan.columns; ++column, ++point)
     {
-      const ClassIndex class_index = table.find(point->label);
-      if (!table[class_index].isThing())
+      const ClassKind kind = table.kindOf(point->label);
+      if (kind != ClassKind::kThing)
       {
-        if (class_index == kUnknownClass) noteUnknown(scan.unknown_labels, point->label);
+        if (kind == ClassKind::kIgnored && table.find(point->label) == kUnknownClass)
+          noteUnknown(scan.unknown_labels, point->label);
         continue;
       }
       if (!isReturn(*point, max_squared_range)) continue;
+      const ClassIndex class_index = table.find(point->label);
       scan.points.push_back({point->x, point->y, point->z, column});
       scan.link.push_back(keys[class_index]);
       scan.class_index.push_back(class_index);

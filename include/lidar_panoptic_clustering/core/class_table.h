@@ -52,6 +52,15 @@ public:
   {
     return raw_id < class_of_id_.size() ? class_of_id_[raw_id] : kUnknownClass;
   }
+  /// The same as (*this)[find(raw_id)].kind, .rgb, without a look at the class.
+  ClassKind kindOf(std::uint32_t raw_id) const
+  {
+    return raw_id < kind_of_id_.size() ? kind_of_id_[raw_id] : ClassKind::kIgnored;
+  }
+  std::uint32_t rgbOf(std::uint32_t raw_id) const
+  {
+    return raw_id < rgb_of_id_.size() ? rgb_of_id_[raw_id] : classes_[kUnknownClass].rgb;
+  }
   /// The class called `name`; kUnknownClass where there is none.
   ClassIndex findByName(const std::string& name) const;
 
@@ -65,6 +74,8 @@ private:
   std::string name_;
   std::vector<ClassInfo> classes_;
   std::vector<std::string> groups_;
-  std::vector<ClassIndex> class_of_id_;  ///< by raw id
+  std::vector<ClassIndex> class_of_id_;  ///< by raw id, as are the next two
+  std::vector<ClassKind> kind_of_id_;
+  std::vector<std::uint32_t> rgb_of_id_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -61,10 +61,14 @@ struct ThingScan
   }
 };
 
+/// "auto", "full_turn", "sector"
+const std::vector<std::string>& fieldOfViewNames();
+
 struct SelectionConfig
 {
   double max_range_m = 300.0;  ///< returns beyond count as no return
-  bool full_turn = true;       ///< the scan closes on itself; false for a sector
+  /// Whether the scan closes on itself; "auto": told from the azimuth its columns span, for each scan.
+  std::string field_of_view = "auto";
   std::string class_policy = "class";
   double link_distance_scale = 1.0;  ///< factor on the class table's link distances
 
@@ -72,11 +76,15 @@ struct SelectionConfig
   static void visit(Self& self, Visitor&& visitor)
   {
     visitor("max_range_m", self.max_range_m, 1.0, 10000.0);
-    visitor("full_turn", self.full_turn);
+    visitor("field_of_view", self.field_of_view, fieldOfViewNames());
     visitor("class_policy", self.class_policy, classPolicyNames());
     visitor("link_distance_scale", self.link_distance_scale, 0.05, 100.0);
   }
 };
+
+/// The azimuth between neighbouring columns of an organised cloud [rad]: the mean over some hundred pairs of returns,
+/// at most an eighth of the columns apart, evenly spread over the cloud. 0 where there are hardly any.
+float measureColumnAngle(const LabelledCloud& cloud, float max_range_m);
 
 /// Finds the thing points of an organised cloud: one pass, linear in the pixels, no allocation once `scan` has grown.
 ///
