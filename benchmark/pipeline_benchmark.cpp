@@ -1,78 +1,27 @@
 // Time of each stage and algorithm, one thread, beside a plain copy of the frame. Figures are worth comparing within
 // one run only.
-#include "recorded_data.h"
+//   simulated/, recorded/   whole scans: 64 x 2048, 5 % of the pixels things
+//   ten_thousand/           clustering alone, recorded scans with exactly 10,000 things
+//   all_things/, 128_rings/ cost against size: every return a thing, on 64 and on 128 rings
+#include "benchmark_scans.h"
 
-#include "lidar_panoptic_clustering/clusterers/factory.h"
-#include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
-#include "lidar_panoptic_clustering/projection/point_projection.h"
-#include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
-
-#include <benchmark/benchmark.h>
-
-#include <memory>
-#include <string>
-#include <vector>
+#include <malloc.h>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
-std::shared_ptr<const ClassTable> table()
+/// A frame that is not in the cache, into one that was touched before: what the pipeline is measured against. With
+/// `fresh`, into new memory.
+void plainCopy(benchmark::State& state, const Scans& scans, bool fresh)
 {
-  static const auto loaded = std::make_shared<const ClassTable>(ClassTable::load("semantic_kitti"));
-  return loaded;
-}
-
-std::vector<LabelledCloud> simulatedScans()
-{
-  LidarSimulator simulator;
-  std::vector<LabelledCloud> scans(10);
-  PanopticCloud scan;
-  for (std::size_t i = 0; i < scans.size(); ++i)
-  {
-    simulator.scan(10 * i, scan);
-    scans[i] = LabelledCloud(scan.width, scan.height);
-    for (std::size_t k = 0; k < scan.points.size(); ++k)
-    {
-      scans[i].points[k].getVector4fMap() = scan.points[k].getVector4fMap();
-      scans[i].points[k].label = scan.points[k].label;
-    }
-  }
-  return scans;
-}
-
-std::vector<LabelledCloud> recordedScans(const std::string& data)
-{
-  std::vector<LabelledCloud> scans;
-  PointProjector projector{ProjectionConfig{}};
-  Projection projection;
-  std::vector<ScanPoint> points;
-  std::vector<std::uint32_t> labels;
-  for (const std::string name : {"00", "05", "07"})
-  {
-    const SemanticKittiSequence sequence(data + "/semantickitti", name);
-    for (std::size_t i = 0; i < sequence.size(); ++i)
-    {
-      sequence.readScan(i, points);
-      sequence.readLabels(i, points.size(), labels);
-      projector.project(points, labels, projection);
-      scans.push_back(projection.cloud);
-    }
-  }
-  return scans;
-}
-
-using Scans = std::vector<LabelledCloud>;
-
-/// A frame that is not in the cache, into one that was touched before: what the pipeline is measured against.
-void plainCopy(benchmark::State& state, const Scans& scans)
-{
-  LabelledCloud out;
+  auto out = std::make_unique<LabelledCloud>();
   std::size_t i = 0;
   for (auto _ : state)
   {
-    out = scans[i++ % scans.size()];
-    benchmark::DoNotOptimize(out.points.data());
+    if (fresh) out = std::make_unique<LabelledCloud>();
+    *out = scans[i++ % scans.size()];
+    benchmark::DoNotOptimize(out->points.data());
     benchmark::ClobberMemory();
   }
 }
@@ -86,43 +35,30 @@ void select(benchmark::State& state, const Scans& scans)
     selectThings(scans[i++ % scans.size()], *table(), SelectionConfig(), things);
     found += things.size();
   }
-  state.counters["things"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
+  setThings(state, found);
 }
 
-void cluster(benchmark::State& state, const Scans& scans, const std::string& algorithm)
+void addWholeScans(const std::string& source, const Scans& scans)
 {
-  const Algorithm made = makeAlgorithm(algorithm);
-  std::vector<ThingScan> things(scans.size());
-  for (std::size_t k = 0; k < scans.size(); ++k) selectThings(scans[k], *table(), made.pipeline.selection, things[k]);
-  std::vector<std::uint32_t> component;
-  std::size_t i = 0;
-  for (auto _ : state) made.clusterer->cluster(things[i++ % things.size()], component);
-}
-
-void pipeline(benchmark::State& state, const Scans& scans, const std::string& algorithm)
-{
-  Algorithm made = makeAlgorithm(algorithm);
-  FramePipeline frames(table(), made.pipeline, std::move(made.clusterer));
-  PanopticCloud out;
-  std::size_t i = 0;
-  for (auto _ : state)
+  if (scans.empty()) return;
+  add(source + "/plain_copy", [&scans](benchmark::State& state) { plainCopy(state, scans, false); });
+  add(source + "/plain_copy_fresh", [&scans](benchmark::State& state) { plainCopy(state, scans, true); });
+  add(source + "/select", [&scans](benchmark::State& state) { select(state, scans); });
+  for (const auto& name : algorithmNames())
   {
-    const LabelledCloud& scan = scans[i++ % scans.size()];
-    frames.segment(scan);
-    frames.paint(scan, out);
+    add(source + "/cluster/" + name, [&scans, name](benchmark::State& state) { cluster(state, scans, name); });
+    add(source + "/pipeline/" + name, [&scans, name](benchmark::State& state) { pipeline(state, scans, name); });
+    add(source + "/pipeline_fresh/" + name,
+        [&scans, name](benchmark::State& state) { pipeline(state, scans, name, true); });
   }
 }
 
-void registerAll(const std::string& source, const Scans& scans)
+void addSizes(const std::string& source, const Scans& scans)
 {
-  const auto add = [&source](const std::string& name, const auto& body)
-  { benchmark::RegisterBenchmark((source + "/" + name).c_str(), body)->Unit(benchmark::kMillisecond); };
-  add("plain_copy", [&scans](benchmark::State& state) { plainCopy(state, scans); });
-  add("select", [&scans](benchmark::State& state) { select(state, scans); });
-  for (const auto& name : algorithmNames())
+  for (const std::string name : {"depth", "scan_line_run", "birds_eye"})
   {
-    add("cluster/" + name, [&scans, name](benchmark::State& state) { cluster(state, scans, name); });
-    add("pipeline/" + name, [&scans, name](benchmark::State& state) { pipeline(state, scans, name); });
+    add(source + "/cluster/" + name, [&scans, name](benchmark::State& state) { cluster(state, scans, name); });
+    add(source + "/pipeline/" + name, [&scans, name](benchmark::State& state) { pipeline(state, scans, name); });
   }
 }
 }  // namespace
@@ -133,10 +69,21 @@ int main(int argc, char** argv)
   using namespace lidar_panoptic_clustering;
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const Scans simulated = simulatedScans();
-  registerAll("simulated", simulated);
-  const std::string data = recordedData();
-  const Scans recorded = data.empty() ? Scans() : recordedScans(data);
-  if (!recorded.empty()) registerAll("recorded", recorded);
+  mallopt(M_MMAP_THRESHOLD, 1 << 20);  // else the C library learns to keep a freed frame, and new memory is not new
+  const Scans simulated = simulatedScans(hdl64e(), 10), recorded = recordedScans();
+  addWholeScans("simulated", simulated);
+  addWholeScans("recorded", recorded);
+
+  const Scans ten_thousand = withThings(recorded.empty() ? simulated : recorded, 10000);
+  if (!ten_thousand.empty())
+    for (const auto& name : algorithmNames())
+      add("ten_thousand/cluster/" + name,
+          [&ten_thousand, name](benchmark::State& state) { cluster(state, ten_thousand, name); });
+
+  const Scans all_things = allThings(recorded.empty() ? simulated : recorded);
+  const Scans dense = simulatedScans(hdl128e(), 4), dense_things = allThings(dense);
+  addSizes("all_things", all_things);
+  addSizes("128_rings", dense);
+  addSizes("128_rings_all_things", dense_things);
   benchmark::RunSpecifiedBenchmarks();
 }

@@ -2,6 +2,7 @@
 
 #include "lidar_panoptic_clustering/core/parameters.h"
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -32,19 +33,19 @@ void DepthClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& 
   sets_.flatten(component);
 }
 
+/// The same in either order of the two, and without a branch on which is the farther: on a surface that is a coin toss.
 void DepthClusterer::link(const ThingScan& scan, std::uint32_t i, std::uint32_t j)
 {
-  const ThingPoint *far = &scan.points[i], *near = &scan.points[j];
-  const auto squaredRange = [](const ThingPoint& p) { return p.x * p.x + p.y * p.y + p.z * p.z; };
-  if (squaredRange(*far) < squaredRange(*near)) std::swap(far, near);
-
-  const float dx = far->x - near->x, dy = far->y - near->y, dz = far->z - near->z;
+  const ThingPoint &a = scan.points[i], &b = scan.points[j];
+  const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
   const float squared_distance = dx * dx + dy * dy + dz * dz;
   const float link_distance = scan.linkDistance(i, j);
   if (squared_distance > max_squared_distance_ || squared_distance >= link_distance * link_distance) return;
-  const float cx = far->y * dz - far->z * dy, cy = far->z * dx - far->x * dz, cz = far->x * dy - far->y * dx;
-  const float dot = far->x * dx + far->y * dy + far->z * dz;  // >= 0: `far` is the farther
-  if (cx * cx + cy * cy + cz * cz > squared_tan_theta_ * dot * dot || squared_distance == 0.0F) sets_.unite(i, j);
+  const float sx = a.x + b.x, sy = a.y + b.y, sz = a.z + b.z;  // (A + B) x D = 2 A x D
+  const float cx = sy * dz - sz * dy, cy = sz * dx - sx * dz, cz = sx * dy - sy * dx;
+  const float dot = std::max(a.x * dx + a.y * dy + a.z * dz, -(b.x * dx + b.y * dy + b.z * dz));  // the farther's
+  if (cx * cx + cy * cy + cz * cz > 4.0F * squared_tan_theta_ * dot * dot || squared_distance == 0.0F)
+    sets_.unite(i, j);
 }
 
 void DepthClusterer::linkAlongLines(const ThingScan& scan)

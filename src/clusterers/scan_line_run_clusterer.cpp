@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
+#include <limits>
 
 namespace lidar_panoptic_clustering
 {
@@ -31,13 +33,24 @@ float squaredGap(float a_min, float a_max, float b_min, float b_max)
   return gap * gap;
 }
 
+/// asin(x) for x in [0, 1], within 1e-7.
+float arcSine(float x)
+{
+  if (x > 0.25F) return std::asin(x);
+  const float s = x * x;
+  return x * (1.0F + s * (1.0F / 6.0F + s * (3.0F / 40.0F + s * (15.0F / 336.0F + s * (105.0F / 3456.0F)))));
+}
+
 /// Columns either side of a point within which another one closer than `distance` can lie.
 int windowOf(const ThingPoint& p, float distance, float column_angle, int max_window)
 {
   const float range = std::sqrt(p.x * p.x + p.y * p.y);
-  const float columns = std::asin(std::min(1.0F, distance / range)) / column_angle;
+  const float columns = arcSine(std::min(1.0F, distance / range)) / column_angle;
   return columns < static_cast<float>(max_window) ? static_cast<int>(columns) + 1 : max_window;
 }
+
+constexpr std::size_t kBudget = 8;  // comparisons a point of two lines before they are compared point by point
+constexpr std::uint32_t kBlock = 8;
 }  // namespace
 
 ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : config_(config)
@@ -49,13 +62,15 @@ ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : co
 
 void ScanLineRunClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)
 {
+  looked_at_ = 0;
   sortByLink(scan);
   findRuns(scan);
   const auto gap = static_cast<std::uint32_t>(config_.max_line_gap);
+  const int turn = scan.full_turn ? static_cast<int>(scan.columns) : 0;
   for (std::uint32_t row = 1; row < scan.rows; ++row)
     for (std::uint32_t upper = row - std::min(row, gap); upper < row; ++upper)
       for (std::uint32_t link = 0; link < scan.link_count; ++link)
-        linkLines(scan, upper * scan.link_count + link, row * scan.link_count + link);
+        linkLines(upper * scan.link_count + link, row * scan.link_count + link, turn);
 
   sets_.flatten(representative_);
   component.resize(scan.size());
@@ -117,8 +132,12 @@ void ScanLineRunClusterer::findRuns(const ThingScan& scan)
   slot_run_[slots] = static_cast<std::uint32_t>(runs_.size());
 
   sets_.reset(runs_.size());
-  if (!scan.full_turn) return;
-  for (std::size_t slot = 0; slot < slots; ++slot)
+  if (scan.full_turn) joinOverTheWrap();
+}
+
+void ScanLineRunClusterer::joinOverTheWrap()
+{
+  for (std::size_t slot = 0; slot + 1 < slot_run_.size(); ++slot)
   {
     if (slot_run_[slot] == slot_run_[slot + 1]) continue;
     const std::uint32_t first = slot_run_[slot], last = slot_run_[slot + 1] - 1;
@@ -127,32 +146,39 @@ void ScanLineRunClusterer::findRuns(const ThingScan& scan)
   }
 }
 
-void ScanLineRunClusterer::linkLines(const ThingScan& scan, std::uint32_t upper_slot, std::uint32_t lower_slot)
+void ScanLineRunClusterer::linkLines(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn)
 {
+  if (slot_run_[upper_slot] == slot_run_[upper_slot + 1] || slot_run_[lower_slot] == slot_run_[lower_slot + 1]) return;
+  if (!linkRuns(upper_slot, lower_slot, turn)) linkPoints(upper_slot, lower_slot, turn);
+}
+
+/// Run by run; false when that took more comparisons than is usual and was not ended.
+bool ScanLineRunClusterer::linkRuns(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn)
+{
+  const auto pointsOf = [this](std::uint32_t slot) { return slot_begin_[slot + 1] - slot_begin_[slot]; };
+  const std::size_t budget = looked_at_ + kBudget * (pointsOf(upper_slot) + pointsOf(lower_slot));
   const auto begin = runs_.begin() + slot_run_[lower_slot], end = runs_.begin() + slot_run_[lower_slot + 1];
-  if (begin == end) return;
-  const int turn = scan.full_turn ? static_cast<int>(scan.columns) : 0;
   for (std::uint32_t upper = slot_run_[upper_slot]; upper < slot_run_[upper_slot + 1]; ++upper)
   {
     const Run& run = runs_[upper];
-    // the lower line as it is, and a turn to the left and to the right
-    for (int shift = -turn; shift <= turn; shift += std::max(1, turn))
+    // the lower line as it is, and where the window crosses the wrap, a turn to the left or to the right
+    for (int shift = run.first_column < run.window ? -turn : 0; shift <= turn; shift += std::max(1, turn))
     {
       const int from = run.first_column - run.window - shift, to = run.last_column + run.window - shift;
+      if (to < 0) break;
       auto lower = std::lower_bound(begin, end, from, [](const Run& r, int column) { return r.last_column < column; });
       for (; lower != end && lower->first_column <= to; ++lower)
-        linkRuns(upper, static_cast<std::uint32_t>(lower - runs_.begin()), shift);
+      {
+        const auto other = static_cast<std::uint32_t>(lower - runs_.begin());
+        if (++looked_at_ > budget) return false;
+        if (sets_.find(upper) != sets_.find(other) && anyPairClose(run, *lower, shift)) sets_.unite(upper, other);
+      }
     }
   }
+  return true;
 }
 
-void ScanLineRunClusterer::linkRuns(std::uint32_t upper, std::uint32_t lower, int shift)
-{
-  if (sets_.find(upper) != sets_.find(lower) && anyPairClose(runs_[upper], runs_[lower], shift))
-    sets_.unite(upper, lower);
-}
-
-bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int shift) const
+bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int shift)
 {
   float squared_gap = 0.0F;
   for (int axis = 0; axis < 3; ++axis)
@@ -170,12 +196,89 @@ bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int 
       continue;
 
     const auto close = [&](const Point& q)
-    { return std::abs(q.column + shift - p.column) <= q.window && areClose(p, q, line_distance_); };
+    {
+      ++looked_at_;
+      return std::abs(q.column + shift - p.column) <= q.window && areClose(p, q, line_distance_);
+    };
     for (std::uint32_t j = right; j < lower.end && points_[j].column + shift - p.column <= p.window; ++j)
       if (close(points_[j])) return true;
     for (std::uint32_t j = right; j > lower.begin && p.column - points_[j - 1].column - shift <= p.window; --j)
       if (close(points_[j - 1])) return true;
   }
   return false;
+}
+
+/// Each upper point with all lower ones in its window.
+void ScanLineRunClusterer::linkPoints(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn)
+{
+  const std::uint32_t begin = slot_begin_[lower_slot], size = slot_begin_[lower_slot + 1] - begin;
+  for (auto* coordinate : {&lower_.x, &lower_.y, &lower_.z})
+    coordinate->assign(size + kBlock, std::numeric_limits<float>::infinity());  // a block may end behind the line
+  lower_.object.resize(size + kBlock);
+  for (std::uint32_t k = 0; k < size; ++k)
+  {
+    const Point& q = points_[begin + k];
+    lower_.x[k] = q.x, lower_.y[k] = q.y, lower_.z[k] = q.z;
+    lower_.object[k] = sets_.find(run_of_thing_[q.thing]);
+  }
+  for (std::uint32_t i = slot_begin_[upper_slot]; i < slot_begin_[upper_slot + 1]; ++i)
+  {
+    const Point& p = points_[i];
+    linkPoint(p, lower_slot, 0);
+    if (turn > 0 && p.column < p.window) linkPoint(p, lower_slot, -turn);
+    if (turn > 0 && p.column + p.window >= turn) linkPoint(p, lower_slot, turn);
+  }
+}
+
+void ScanLineRunClusterer::linkPoint(const Point& p, std::uint32_t lower_slot, int shift)
+{
+  const auto begin = points_.begin() + slot_begin_[lower_slot], end = points_.begin() + slot_begin_[lower_slot + 1];
+  const auto isLeftOf = [](const Point& q, int column) { return q.column < column; };
+  const auto from = std::lower_bound(begin, end, p.column - p.window - shift, isLeftOf);
+  const auto to = std::lower_bound(from, end, p.column + p.window + 1 - shift, isLeftOf);
+  std::uint32_t object = sets_.find(run_of_thing_[p.thing]);
+  const auto last = static_cast<std::uint32_t>(to - begin);
+  for (auto k = static_cast<std::uint32_t>(from - begin); k < last; k += kBlock)
+  {
+    looked_at_ += kBlock;
+    if (isAnyNear(p, k, object)) linkBlock(p, &*begin, k, std::min(k + kBlock, last), shift, object);
+  }
+}
+
+/// Whether any of kBlock points of the lower line from the k-th on is near p and of another object.
+bool ScanLineRunClusterer::isAnyNear(const Point& p, std::uint32_t k, std::uint32_t object) const
+{
+  using Floats = float __attribute__((vector_size(16)));
+  using Ints = std::int32_t __attribute__((vector_size(16)));
+  Ints near = {};
+  for (const std::uint32_t end = k + kBlock; k < end; k += 4)
+  {
+    Floats x, y, z;
+    Ints others;
+    std::memcpy(&x, &lower_.x[k], sizeof(x));
+    std::memcpy(&y, &lower_.y[k], sizeof(y));
+    std::memcpy(&z, &lower_.z[k], sizeof(z));
+    std::memcpy(&others, &lower_.object[k], sizeof(others));
+    x -= p.x, y -= p.y, z -= p.z;
+    near |= (x * x + y * y + z * z < line_distance_ * line_distance_) & (others != static_cast<std::int32_t>(object));
+  }
+  std::uint64_t halves[2];
+  std::memcpy(halves, &near, sizeof(halves));
+  return (halves[0] | halves[1]) != 0;
+}
+
+/// Joins p with the close ones among points [begin, end) of the lower line; `object` is that of p.
+void ScanLineRunClusterer::linkBlock(const Point& p, const Point* line, std::uint32_t begin, std::uint32_t end,
+                                     int shift, std::uint32_t& object)
+{
+  for (std::uint32_t k = begin; k < end; ++k)
+  {
+    const Point& q = line[k];
+    if (lower_.object[k] == object || std::abs(q.column + shift - p.column) > q.window ||
+        !areClose(p, q, line_distance_))
+      continue;
+    sets_.unite(object, run_of_thing_[q.thing]);
+    object = lower_.object[k] = sets_.find(object);
+  }
 }
 }  // namespace lidar_panoptic_clustering

@@ -43,7 +43,7 @@ float squaredDistance(float ax, float ay, float bx, float by)
 
 void PlanarCells::clear(std::size_t capacity)
 {
-  index_.reset();
+  index_.reset(index_.size());  // about as many as in the last scan
   ranges_.clear();
   added_.clear();
   added_.reserve(capacity);
@@ -55,8 +55,12 @@ void PlanarCells::clear(std::size_t capacity)
 
 void PlanarCells::add(float x, float y, std::int32_t layer, float distance, std::uint32_t thing)
 {
-  const float cells_per_m = 1.0F / (kSideInDiagonals * distance);
-  const VoxelKey key{floorToInt(x * cells_per_m), floorToInt(y * cells_per_m), layer};
+  if (distance != last_distance_)
+  {
+    last_distance_ = distance;
+    cells_per_m_ = 1.0F / (kSideInDiagonals * distance);
+  }
+  const VoxelKey key{floorToInt(x * cells_per_m_), floorToInt(y * cells_per_m_), layer};
   // neighbours in the scan mostly share a cell
   if (last_cell_ == kNone || key.x != last_key_.x || key.y != last_key_.y || key.z != last_key_.z)
   {

@@ -31,8 +31,9 @@ struct ScanLineRunConfig
 /// line_distance_m (and the link distance) and lie within each other's window: asin(min(1, line_distance_m / horizontal
 /// range)) of azimuth either side, in columns and rounded up, at most max_window_px.
 ///
-/// Runs that are one object already are not compared again, so that a scan costs little more than its runs' overlaps;
-/// at the most points x 2 max_line_gap x max_window_px comparisons.
+/// Runs that are one object already are not compared again, so that a scan costs little more than its runs' overlaps.
+/// Where that does not help, in lines of many short runs or of runs that lie close but do not join, points are compared
+/// eight at a time with the processor's vectors; at the most points x 2 max_line_gap x max_window_px comparisons.
 class ScanLineRunClusterer : public Clusterer
 {
 public:
@@ -42,6 +43,9 @@ public:
   explicit ScanLineRunClusterer(const ScanLineRunConfig& config = {});
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+
+  /// Pairs of points and of runs compared in the last scan, for tests that bound the work.
+  std::size_t pairsLookedAt() const { return looked_at_; }
 
 private:
   struct Point
@@ -64,9 +68,15 @@ private:
 
   void sortByLink(const ThingScan& scan);
   void findRuns(const ThingScan& scan);
-  void linkLines(const ThingScan& scan, std::uint32_t upper_slot, std::uint32_t lower_slot);
-  void linkRuns(std::uint32_t upper, std::uint32_t lower, int shift);
-  bool anyPairClose(const Run& upper, const Run& lower, int shift) const;
+  void joinOverTheWrap();
+  void linkLines(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
+  bool linkRuns(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
+  bool anyPairClose(const Run& upper, const Run& lower, int shift);
+  void linkPoints(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
+  void linkPoint(const Point& p, std::uint32_t lower_slot, int shift);
+  bool isAnyNear(const Point& p, std::uint32_t k, std::uint32_t object) const;
+  void linkBlock(const Point& p, const Point* line, std::uint32_t begin, std::uint32_t end, int shift,
+                 std::uint32_t& object);
 
   ScanLineRunConfig config_;
   float run_distance_, line_distance_;
@@ -79,5 +89,14 @@ private:
   std::vector<std::uint32_t> run_of_thing_;
   std::vector<std::uint32_t> representative_;
   DisjointSets sets_;  ///< of runs
+  std::size_t looked_at_ = 0;
+
+  /// The points of a slot, coordinate by coordinate, for linkPoints().
+  struct Columns
+  {
+    std::vector<float> x, y, z;
+    std::vector<std::uint32_t> object;  ///< of the point's run, as it was when it was looked up last
+  };
+  Columns lower_;
 };
 }  // namespace lidar_panoptic_clustering

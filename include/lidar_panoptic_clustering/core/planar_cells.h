@@ -83,6 +83,7 @@ private:
   std::vector<Range> ranges_;  ///< by cell
   std::vector<Point> added_, points_;
   std::vector<std::uint32_t> cell_of_added_;
+  float last_distance_ = 0.0F, cells_per_m_ = 0.0F;  ///< of the point added last, like the next two
   VoxelKey last_key_{};
   std::uint32_t last_cell_ = kNone;
 

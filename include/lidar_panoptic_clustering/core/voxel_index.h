@@ -80,6 +80,7 @@ private:
     }
     ++epoch_;
     mask_ = count - 1;
+    for (shift_ = 64; count > 1; count /= 2) --shift_;
   }
 
   void grow()
@@ -94,7 +95,8 @@ private:
 
   std::size_t locate(std::uint64_t key) const
   {
-    std::size_t at = (key * 0x9E3779B97F4A7C15ULL >> 20) & mask_;
+    // Fibonacci hashing: of a product's bits only the highest depend on all of the key's
+    std::size_t at = key * 0x9E3779B97F4A7C15ULL >> shift_;
     while (slots_[at].epoch == epoch_ && slots_[at].key != key) at = (at + 1) & mask_;
     return at;
   }
@@ -103,5 +105,6 @@ private:
   std::vector<VoxelKey> keys_;
   std::uint32_t epoch_ = 1;  ///< above that of every slot not in use
   std::size_t mask_ = kFewestSlots - 1;
+  int shift_ = 58;  ///< from 64 bits down to those of mask_
 };
 }  // namespace lidar_panoptic_clustering
