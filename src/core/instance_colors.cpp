@@ -10,13 +10,10 @@ namespace
 {
 constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-std::int64_t cellOf(float metres, float cell)
+VoxelKey cellOf(const Instances::Object& object, float side)
 {
-  return static_cast<std::int64_t>(std::floor(metres / cell));
-}
-std::int64_t cellKey(std::int64_t column, std::int64_t row)
-{
-  return column * 1000003 + row;
+  return {static_cast<std::int32_t>(std::floor(object.x / side)),
+          static_cast<std::int32_t>(std::floor(object.y / side)), static_cast<std::int32_t>(object.class_index)};
 }
 
 /// Hue 0..1, full value, to 0x00RRGGBB.
@@ -43,27 +40,27 @@ std::uint32_t seriesColor(std::uint32_t k)
 
 void InstanceColors::collectPairs(const Instances& instances)
 {
-  grid_.clear();
+  grid_.reset(previous_.size());
+  first_.clear();
+  next_in_cell_.resize(previous_.size());
   pairs_.clear();
   for (std::uint32_t p = 0; p < previous_.size(); ++p)
-    grid_.emplace(cellKey(cellOf(previous_[p].x, kGateM), cellOf(previous_[p].y, kGateM)), p);
+  {
+    const std::uint32_t cell = grid_.insert(cellOf(previous_[p], kGateM));
+    if (cell == first_.size()) first_.push_back(kNone);
+    next_in_cell_[p] = first_[cell];
+    first_[cell] = p;
+  }
 
   for (std::uint32_t c = 0; c < instances.count(); ++c)
   {
     const auto& object = instances.objects[c];
-    const std::int64_t column = cellOf(object.x, kGateM), row = cellOf(object.y, kGateM);
-    for (std::int64_t dc = -1; dc <= 1; ++dc)
-      for (std::int64_t dr = -1; dr <= 1; ++dr)
+    const VoxelKey key = cellOf(object, kGateM);
+    for (std::int32_t dx = -1; dx <= 1; ++dx)
+      for (std::int32_t dy = -1; dy <= 1; ++dy)
       {
-        const auto [begin, end] = grid_.equal_range(cellKey(column + dc, row + dr));
-        for (auto it = begin; it != end; ++it)
-        {
-          const auto& before = previous_[it->second];
-          const float dx = object.x - before.x, dy = object.y - before.y;
-          const float squared_distance = dx * dx + dy * dy;
-          if (before.class_index == object.class_index && squared_distance < kGateM * kGateM)
-            pairs_.push_back({squared_distance, c, it->second});
-        }
+        const std::uint32_t cell = grid_.find({key.x + dx, key.y + dy, key.z});
+        if (cell != VoxelIndex::kNone) comparePrevious(c, object, first_[cell]);
       }
   }
   std::sort(pairs_.begin(), pairs_.end(),
@@ -71,6 +68,20 @@ void InstanceColors::collectPairs(const Instances& instances)
               return std::tie(a.squared_distance, a.current, a.previous) <
                      std::tie(b.squared_distance, b.current, b.previous);
             });
+}
+
+/// Notes the objects of a cell's list that lie within the gate. A cell of 2 m that holds more than kMost objects of one
+/// class shows no colours a person could follow; the rest of them is passed over, which keeps the time linear.
+void InstanceColors::comparePrevious(std::uint32_t current, const Instances::Object& object, std::uint32_t first)
+{
+  constexpr int kMost = 16;
+  int left = kMost;
+  for (std::uint32_t p = first; p != kNone && left > 0; p = next_in_cell_[p], --left)
+  {
+    const float dx = object.x - previous_[p].x, dy = object.y - previous_[p].y;
+    const float squared_distance = dx * dx + dy * dy;
+    if (squared_distance < kGateM * kGateM) pairs_.push_back({squared_distance, current, p});
+  }
 }
 
 const std::vector<std::uint32_t>& InstanceColors::follow(const Instances& instances)

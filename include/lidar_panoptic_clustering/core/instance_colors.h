@@ -1,9 +1,9 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/instances.h"
+#include "lidar_panoptic_clustering/core/voxel_index.h"
 
 #include <cstdint>
-#include <unordered_map>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -33,10 +33,13 @@ private:
     std::uint32_t current, previous;
   };
   void collectPairs(const Instances& instances);
+  void comparePrevious(std::uint32_t current, const Instances::Object& object, std::uint32_t first);
 
   std::vector<Instances::Object> previous_;
   std::vector<std::uint32_t> previous_colors_, colors_;
-  std::unordered_multimap<std::int64_t, std::uint32_t> grid_;
+  VoxelIndex grid_;
+  std::vector<std::uint32_t> first_;  ///< by occupied cell: its last object of the scan before
+  std::vector<std::uint32_t> next_in_cell_;
   std::vector<Pair> pairs_;
   std::vector<bool> previous_taken_;
   std::uint32_t next_ = 0;
