@@ -15,7 +15,7 @@ def pipeline_parameters():
     generator.add("max_range_m", double_t, 0, "Returns beyond this range count as no return [m]", 300.0, 1.0, 10000.0)
     views = generator.enum([
         generator.const("Auto", str_t, "auto", "Told from each scan"),
-        generator.const("FullTurn", str_t, "full_turn", "The last column is the first one's neighbour"),
+        generator.const("FullTurn", str_t, "full_turn", "The first column follows the last"),
         generator.const("Sector", str_t, "sector", "The scan does not close on itself"),
     ], "Field of view")
     generator.add("field_of_view", str_t, 0, "Whether the scan closes on itself", "auto", edit_method=views)

@@ -207,7 +207,7 @@ TEST_P(OracleTest, worstScansAreSplitAsTheRuleSays)
       const Graph graph = GetParam().oracle(cloud, things);
       if (graph.doubtful) continue;
       std::vector<std::uint32_t> found;
-      const PanopticCloud out = runRule(GetParam().algorithm, cloud);
+      const PanopticCloud out = runRule(GetParam().algorithm, cloud, {{"field_of_view", std::string("full_turn")}});
       for (const Thing& thing : things) found.push_back(out.points[thing.row * cloud.width + thing.column].instance);
       ASSERT_EQ(found, components(things.size(), graph.neighbours)) << worst.name << ", " << columns << " columns";
       ++compared;
