@@ -27,6 +27,7 @@ DepthClusterer::DepthClusterer(const DepthConfig& config)
 
 void DepthClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)
 {
+  looked_at_ = 0;
   sets_.reset(scan.size());
   linkAlongLines(scan);
   linkAlongColumns(scan);
@@ -36,6 +37,7 @@ void DepthClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& 
 /// The same in either order of the two, and without a branch on which is the farther: on a surface that is a coin toss.
 void DepthClusterer::link(const ThingScan& scan, std::uint32_t i, std::uint32_t j)
 {
+  ++looked_at_;
   const ThingPoint &a = scan.points[i], &b = scan.points[j];
   const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
   const float squared_distance = dx * dx + dy * dy + dz * dz;

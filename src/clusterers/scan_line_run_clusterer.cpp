@@ -51,6 +51,30 @@ int windowOf(const ThingPoint& p, float distance, float column_angle, int max_wi
 
 constexpr std::size_t kBudget = 8;  // comparisons a point of two lines before they are compared point by point
 constexpr std::uint32_t kBlock = 8;
+
+/// Whether any of kBlock points is nearer to p than `distance` and of another object than `object`.
+template <class Point>
+bool isAnyNear(const Point& p, float distance, std::uint32_t object, const float* x, const float* y, const float* z,
+               const std::uint32_t* objects)
+{
+  using Floats = float __attribute__((vector_size(16)));
+  using Ints = std::int32_t __attribute__((vector_size(16)));
+  Ints near = {};
+  for (std::uint32_t k = 0; k < kBlock; k += 4)
+  {
+    Floats dx, dy, dz;
+    Ints others;
+    std::memcpy(&dx, x + k, sizeof(dx));
+    std::memcpy(&dy, y + k, sizeof(dy));
+    std::memcpy(&dz, z + k, sizeof(dz));
+    std::memcpy(&others, objects + k, sizeof(others));
+    dx -= p.x, dy -= p.y, dz -= p.z;
+    near |= (dx * dx + dy * dy + dz * dz < distance * distance) & (others != static_cast<std::int32_t>(object));
+  }
+  std::uint64_t halves[2];
+  std::memcpy(halves, &near, sizeof(halves));
+  return (halves[0] | halves[1]) != 0;
+}
 }  // namespace
 
 ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : config_(config)
@@ -190,9 +214,10 @@ bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int 
   {
     const Point& p = points_[i];
     while (right < lower.end && points_[right].column + shift < p.column) ++right;
+    const float distance = std::min(line_distance_, p.link_distance);
     if (!(squaredGap(p.x, p.x, lower.min[0], lower.max[0]) + squaredGap(p.y, p.y, lower.min[1], lower.max[1]) +
               squaredGap(p.z, p.z, lower.min[2], lower.max[2]) <
-          line_distance_ * line_distance_))
+          distance * distance))
       continue;
 
     const auto close = [&](const Point& q)
@@ -238,33 +263,13 @@ void ScanLineRunClusterer::linkPoint(const Point& p, std::uint32_t lower_slot, i
   const auto to = std::lower_bound(from, end, p.column + p.window + 1 - shift, isLeftOf);
   std::uint32_t object = sets_.find(run_of_thing_[p.thing]);
   const auto last = static_cast<std::uint32_t>(to - begin);
+  const float distance = std::min(line_distance_, p.link_distance);
   for (auto k = static_cast<std::uint32_t>(from - begin); k < last; k += kBlock)
   {
     looked_at_ += kBlock;
-    if (isAnyNear(p, k, object)) linkBlock(p, &*begin, k, std::min(k + kBlock, last), shift, object);
+    if (isAnyNear(p, distance, object, &lower_.x[k], &lower_.y[k], &lower_.z[k], &lower_.object[k]))
+      linkBlock(p, &*begin, k, std::min(k + kBlock, last), shift, object);
   }
-}
-
-/// Whether any of kBlock points of the lower line from the k-th on is near p and of another object.
-bool ScanLineRunClusterer::isAnyNear(const Point& p, std::uint32_t k, std::uint32_t object) const
-{
-  using Floats = float __attribute__((vector_size(16)));
-  using Ints = std::int32_t __attribute__((vector_size(16)));
-  Ints near = {};
-  for (const std::uint32_t end = k + kBlock; k < end; k += 4)
-  {
-    Floats x, y, z;
-    Ints others;
-    std::memcpy(&x, &lower_.x[k], sizeof(x));
-    std::memcpy(&y, &lower_.y[k], sizeof(y));
-    std::memcpy(&z, &lower_.z[k], sizeof(z));
-    std::memcpy(&others, &lower_.object[k], sizeof(others));
-    x -= p.x, y -= p.y, z -= p.z;
-    near |= (x * x + y * y + z * z < line_distance_ * line_distance_) & (others != static_cast<std::int32_t>(object));
-  }
-  std::uint64_t halves[2];
-  std::memcpy(halves, &near, sizeof(halves));
-  return (halves[0] | halves[1]) != 0;
 }
 
 /// Joins p with the close ones among points [begin, end) of the lower line; `object` is that of p.

@@ -76,22 +76,20 @@ std::uint32_t SupervoxelClusterer::clusterGroup(const ThingScan& scan, std::size
                                                 std::vector<std::uint32_t>& component)
 {
   // PCL's sums and ties depend on the order of its input: a fixed one makes the result independent of the scan's
-  things_.assign(groups_.begin(group), groups_.end(group));
+  things_.clear();
+  for (const std::uint32_t* i = groups_.begin(group); i != groups_.end(group); ++i)
+    things_.push_back({scan.points[*i].x, scan.points[*i].y, scan.points[*i].z, *i});
   std::sort(things_.begin(), things_.end(),
-            [&](std::uint32_t a, std::uint32_t b)
-            {
-              const ThingPoint &p = scan.points[a], &q = scan.points[b];
-              return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z);
-            });
+            [](const Thing& p, const Thing& q) { return std::tie(p.x, p.y, p.z) < std::tie(q.x, q.y, q.z); });
   Cloud::Ptr cloud(new Cloud);
-  for (const std::uint32_t i : things_)
-    cloud->points.emplace_back(scan.points[i].x, scan.points[i].y, scan.points[i].z);
+  cloud->points.reserve(things_.size());
+  for (const Thing& p : things_) cloud->points.emplace_back(p.x, p.y, p.z);
   cloud->width = static_cast<std::uint32_t>(cloud->points.size());
   cloud->height = 1;
 
   const auto resolution = static_cast<float>(config_.voxel_m);
   const OctreeGrid grid(*cloud, resolution);
-  voxels_.reset(cloud->points.size());
+  voxels_.reset();
   voxel_of_point_.resize(things_.size());
   for (std::size_t k = 0; k < things_.size(); ++k) voxel_of_point_[k] = voxels_.insert(grid.keyOf(cloud->points[k]));
 
@@ -118,7 +116,7 @@ std::uint32_t SupervoxelClusterer::clusterGroup(const ThingScan& scan, std::size
     }
   }
   next_object = joinLeftOver(next_object);
-  for (std::size_t k = 0; k < things_.size(); ++k) component[things_[k]] = object_of_voxel_[voxel_of_point_[k]];
+  for (std::size_t k = 0; k < things_.size(); ++k) component[things_[k].index] = object_of_voxel_[voxel_of_point_[k]];
   return next_object;
 }
 

@@ -13,10 +13,14 @@ constexpr float kSideInDiagonals = 0.7071F;  // below sqrt(1/2): two points of a
 constexpr std::uint64_t kFewPairs = 64;
 constexpr float kFar = std::numeric_limits<float>::max();
 
-// half of the cells around, the other half looks here; nearest first, so that most pairs are joined before their turn
-constexpr std::array<std::array<std::int32_t, 2>, 4> kBeside = {{{1, 0}, {0, 1}, {1, 1}, {-1, 1}}};
-constexpr std::array<std::array<std::int32_t, 2>, 8> kBeyond = {
-    {{2, 0}, {0, 2}, {2, 1}, {1, 2}, {-1, 2}, {-2, 1}, {2, 2}, {-2, 2}}};
+/// In order of layer, y and x: one more is the next cell along x, kRowStep more the one beside it along y.
+constexpr std::uint64_t kRowStep = 1U << 21U;
+std::uint64_t placeOf(const VoxelKey& key)
+{
+  constexpr std::int64_t kMiddle = 1 << 20;
+  return (static_cast<std::uint64_t>(key.z) << 42U) + (static_cast<std::uint64_t>(key.y + kMiddle) << 21U) +
+         static_cast<std::uint64_t>(key.x + kMiddle);
+}
 
 /// std::floor is a call to the C library on processors without SSE 4.1.
 std::int32_t floorToInt(float value)
@@ -91,24 +95,38 @@ void PlanarCells::close()
 void PlanarCells::findComponents(const std::vector<float>& distance_of_layer,
                                  std::vector<std::uint32_t>& component_of_cell)
 {
+  places_.clear();
+  for (std::uint32_t cell = 0; cell < size(); ++cell) places_.push_back({placeOf(index_[cell]), cell});
+  std::sort(places_.begin(), places_.end(), [](const Place& p, const Place& q) { return p.place < q.place; });
   sets_.reset(size());
-  const auto joinWith = [&](const auto& offsets)
-  {
-    for (std::uint32_t cell = 0; cell < size(); ++cell)
+  joinNeighbours(distance_of_layer, 1);  // first, so that most pairs farther apart are joined before their turn
+  joinNeighbours(distance_of_layer, kReach);
+  sets_.flatten(component_of_cell);
+}
+
+/// Joins each cell with those at just `reach` along x or y (at 1 to `reach` for 1): half of them, the other half looks
+/// here. One sweep over all rows with a finger in each row above.
+void PlanarCells::joinNeighbours(const std::vector<float>& distance_of_layer, int reach)
+{
+  std::array<std::size_t, kReach + 1> finger{};
+  const auto far = static_cast<std::uint64_t>(reach);
+  for (const auto& [place, cell] : places_)
+    for (int dy = 0; dy <= reach; ++dy)
     {
-      const VoxelKey key = index_[cell];
-      for (const auto& [dx, dy] : offsets)
+      const std::uint64_t above = place + static_cast<std::uint64_t>(dy) * kRowStep;
+      const std::uint64_t first = dy == 0 ? above + 1 : above - far;
+      std::size_t& k = finger[static_cast<std::size_t>(dy)];
+      while (k < places_.size() && places_[k].place < first) ++k;
+      for (std::size_t n = k; n < places_.size() && places_[n].place <= above + far; ++n)
       {
-        const std::uint32_t other = index_.find({key.x + dx, key.y + dy, key.z});
-        if (other != kNone && sets_.find(cell) != sets_.find(other) &&
-            areCloser(cell, other, distance_of_layer[static_cast<std::size_t>(key.z)]))
+        const std::uint32_t other = places_[n].cell;
+        const bool is_new = reach == 1 || dy == reach || places_[n].place + far == above ||
+                            places_[n].place == above + far;  // not beside it
+        if (is_new && sets_.find(cell) != sets_.find(other) &&
+            areCloser(cell, other, distance_of_layer[static_cast<std::size_t>(index_[cell].z)]))
           sets_.unite(cell, other);
       }
     }
-  };
-  joinWith(kBeside);
-  joinWith(kBeyond);
-  sets_.flatten(component_of_cell);
 }
 
 bool PlanarCells::areCloser(std::uint32_t cell_a, std::uint32_t cell_b, float distance)

@@ -40,6 +40,9 @@ public:
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
 
+  /// Pairs of points compared in the last scan, for tests that bound the work.
+  std::size_t pairsLookedAt() const { return looked_at_; }
+
 private:
   /// A point to look back at, and its position along the line of search.
   struct Last
@@ -55,6 +58,7 @@ private:
   float max_squared_distance_;
   std::uint32_t max_gap_px_;
   DisjointSets sets_;
+  std::size_t looked_at_ = 0;
   std::vector<Last> last_, first_;  ///< by link key, of the line in hand
   std::vector<Last> last_above_;    ///< by column and link key
 };

@@ -74,7 +74,6 @@ private:
   bool anyPairClose(const Run& upper, const Run& lower, int shift);
   void linkPoints(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
   void linkPoint(const Point& p, std::uint32_t lower_slot, int shift);
-  bool isAnyNear(const Point& p, std::uint32_t k, std::uint32_t object) const;
   void linkBlock(const Point& p, const Point* line, std::uint32_t begin, std::uint32_t end, int shift,
                  std::uint32_t& object);
 

@@ -45,6 +45,12 @@ public:
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
 
 private:
+  struct Thing
+  {
+    float x, y, z;
+    std::uint32_t index;  ///< in the ThingScan
+  };
+
   std::uint32_t clusterGroup(const ThingScan& scan, std::size_t group, std::uint32_t first_object,
                              std::vector<std::uint32_t>& component);
   std::uint32_t joinLeftOver(std::uint32_t next_object);
@@ -52,7 +58,7 @@ private:
   SupervoxelConfig config_;
   LinkGroups groups_;
   VoxelIndex voxels_;
-  std::vector<std::uint32_t> things_;          ///< of the group in hand, in order of (x, y, z)
+  std::vector<Thing> things_;                  ///< of the group in hand, in order of (x, y, z)
   std::vector<std::uint32_t> voxel_of_point_;  ///< parallel to things_
   std::vector<std::uint32_t> object_of_voxel_;
   std::vector<std::uint32_t> object_of_set_;

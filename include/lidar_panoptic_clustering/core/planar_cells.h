@@ -44,7 +44,7 @@ public:
   bool areCloser(std::uint32_t cell_a, std::uint32_t cell_b, float distance);
 
   /// The components of "closer than the layer's distance" within each layer, by cell: each cell's value is the first
-  /// cell of its component. `distance_of_layer`: what add() was given.
+  /// cell of its component. `distance_of_layer`: what add() was given. n log n in the cells.
   void findComponents(const std::vector<float>& distance_of_layer, std::vector<std::uint32_t>& component_of_cell);
 
   /// Points looked at by areCloser() since clear(), for tests that bound the work.
@@ -71,6 +71,14 @@ private:
     double from;
   };
 
+  /// A cell, and where it comes in the order of rows.
+  struct Place
+  {
+    std::uint64_t place;
+    std::uint32_t cell;
+  };
+
+  void joinNeighbours(const std::vector<float>& distance_of_layer, int reach);
   bool isAnyPairCloser(Range a, Range b, float squared_distance);
   bool isGreedyPairCloser(Range a, Range b, const Box& box_b, float squared_distance);
   bool reachesOver(std::uint32_t low, std::uint32_t high, bool along_y, float distance);
@@ -91,6 +99,7 @@ private:
   std::array<std::vector<std::uint8_t>, 2> is_sorted_;  ///< by cell: whether it is in sorted_
   std::array<std::vector<Point>, 2> sorted_;            ///< points_, each cell's along x and along y
   std::vector<Arc> envelope_;
+  std::vector<Place> places_;
   DisjointSets sets_;
   std::size_t looked_at_ = 0;
 };

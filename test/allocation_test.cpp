@@ -1,0 +1,137 @@
+// Once it has seen scans of the kind, the way of a scan allocates nothing but a fresh output cloud.
+#include "scan_fixture.h"
+
+#include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
+
+#include <gtest/gtest.h>
+
+#include <atomic>
+#include <cstddef>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 0
+#else
+#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 1
+#endif
+
+namespace
+{
+std::atomic<std::size_t> allocations{0};
+}
+
+#if LIDAR_PANOPTIC_COUNTS_ALLOCATIONS
+// Every way to memory from here and from the libraries: operator new and Eigen's allocator end in these.
+extern "C"
+{
+  void* __libc_malloc(std::size_t size);
+  void* __libc_calloc(std::size_t count, std::size_t size);
+  void* __libc_realloc(void* block, std::size_t size);
+  void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+  void* malloc(std::size_t size)
+  {
+    ++allocations;
+    return __libc_malloc(size);
+  }
+  void* calloc(std::size_t count, std::size_t size)
+  {
+    ++allocations;
+    return __libc_calloc(count, size);
+  }
+  void* realloc(void* block, std::size_t size)
+  {
+    ++allocations;
+    return __libc_realloc(block, size);
+  }
+  void* aligned_alloc(std::size_t alignment, std::size_t size)
+  {
+    ++allocations;
+    return __libc_memalign(alignment, size);
+  }
+}
+#endif
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+std::vector<LabelledCloud> streetScans()
+{
+  LidarSimulator simulator;
+  std::vector<LabelledCloud> scans;
+  PanopticCloud scan;
+  for (std::uint64_t frame = 0; frame < 3; ++frame)
+  {
+    simulator.scan(20 * frame, scan);
+    scans.emplace_back(scan.width, scan.height);
+    for (std::size_t k = 0; k < scan.points.size(); ++k)
+    {
+      scans.back().points[k].getVector4fMap() = scan.points[k].getVector4fMap();
+      scans.back().points[k].label = scan.points[k].label;
+    }
+  }
+  return scans;
+}
+
+class SteadyState : public testing::TestWithParam<std::string>
+{
+protected:
+  void SetUp() override
+  {
+    if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+    const std::size_t before = allocations;
+    const auto counted = std::make_unique<int>(1);
+    ASSERT_EQ(allocations, before + 1) << "the counter does not count " << *counted;
+  }
+};
+
+TEST_P(SteadyState, selectingAndClusteringAllocateNothing)
+{
+  const auto scans = streetScans();
+  const Algorithm made = makeAlgorithm(GetParam());
+  ThingScan things;
+  std::vector<std::uint32_t> component;
+  const auto work = [&]
+  {
+    for (const auto& scan : scans)
+    {
+      selectThings(scan, *kittiTable(), made.pipeline.selection, things);
+      made.clusterer->cluster(things, component);
+    }
+  };
+  work();
+  const std::size_t before = allocations;
+  work();
+  EXPECT_EQ(allocations, before);
+}
+
+TEST_P(SteadyState, theWholeWayAllocatesOnlyTheOutput)
+{
+  const auto scans = streetScans();
+  Algorithm made = makeAlgorithm(GetParam());
+  FramePipeline pipeline(kittiTable(), made.pipeline, std::move(made.clusterer));
+  PanopticCloud recycled;
+  const auto work = [&](bool fresh)
+  {
+    for (const auto& scan : scans)
+    {
+      pipeline.segment(scan);
+      PanopticCloud out;
+      pipeline.paint(scan, fresh ? out : recycled);
+    }
+  };
+  work(false);
+  work(false);  // colours look back one scan
+
+  std::size_t before = allocations;
+  work(false);
+  EXPECT_EQ(allocations, before) << "with an output that is used again";
+  before = allocations;
+  work(true);
+  EXPECT_LE(allocations, before + scans.size()) << "with fresh outputs";
+}
+
+INSTANTIATE_TEST_SUITE_P(Algorithms, SteadyState, testing::Values("depth", "scan_line_run", "birds_eye"),
+                         [](const auto& test) { return test.param; });
+}  // namespace
+}  // namespace lidar_panoptic_clustering
