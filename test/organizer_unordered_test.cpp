@@ -73,7 +73,7 @@ TEST_P(EverySensor, IsPlacedByItsRingsInAnyOrderAndNumbering)
 {
   const auto original = simulatedScan(GetParam());
   const Order returns = returnsOf(original);
-  for (const Rings rings : {Rings::kFromTheTop, Rings::kFromTheBottom, Rings::kInterleaved})
+  for (const Rings rings : {Rings::kFromTheTop, Rings::kFromTheBottom, Rings::kInBlocks, Rings::kAsFired})
     for (const Order& order : {returns, byFiring(returns, original.width), shuffled(returns)})
     {
       const auto scan = organized(oneRow(original, order, rings), sensorConfig(GetParam()));

@@ -81,7 +81,8 @@ enum class Rings
   kNone,
   kFromTheTop,
   kFromTheBottom,
-  kInterleaved  ///< 0, rows / 2, 1, rows / 2 + 1 ... from the top
+  kInBlocks,    ///< from the top: 0, rows / 2, 1, rows / 2 + 1 ...
+  kAsFired      ///< every other beam downwards from the top, in between the others: 0, 2, 4 ... 5, 3, 1
 };
 
 /// The pixels of an image as one row of points in the order given: x y z label, and ring uint16 where it is numbered.
@@ -105,7 +106,8 @@ inline RawMessage oneRow(const LabelledCloud& image, const Order& order, Rings r
     message.set(0, i, "label", p.label);
     if (rings == Rings::kFromTheTop) message.set(0, i, "ring", row);
     if (rings == Rings::kFromTheBottom) message.set(0, i, "ring", rows - 1 - row);
-    if (rings == Rings::kInterleaved) message.set(0, i, "ring", row / 2 + (row % 2) * ((rows + 1) / 2));
+    if (rings == Rings::kInBlocks) message.set(0, i, "ring", row / 2 + (row % 2) * ((rows + 1) / 2));
+    if (rings == Rings::kAsFired) message.set(0, i, "ring", 2 * row < rows ? 2 * row : 2 * (rows - 1 - row) + 1);
   }
   return message;
 }

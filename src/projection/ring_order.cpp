@@ -12,8 +12,7 @@ void RingOrder::look(const std::vector<ScanPoint>& scan, const std::vector<Point
   sum(scan, directions, rings);
   countSteps();
   row_of_ring_.resize(rings);
-  const int steps = falls_ + rises_, most = std::max(falls_, rises_);
-  if (4 * most < 3 * steps && canBeSorted()) return sortByElevation();
+  if (!isMonotone() && canBeSorted()) return sortByElevation();
   for (std::uint32_t ring = 0; ring < rings; ++ring) row_of_ring_[ring] = falls_ >= rises_ ? ring : rings - 1 - ring;
 }
 
