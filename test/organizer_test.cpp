@@ -3,10 +3,9 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "raw_message.h"
 #include "recorded_data.h"
+#include "recorded_message.h"
 
 #include <gtest/gtest.h>
-#include <pcl/PCLPointCloud2.h>
-#include <pcl/io/pcd_io.h>
 
 #include <cmath>
 #include <limits>
@@ -295,31 +294,13 @@ TEST(Organizer, SmallestClouds)
   EXPECT_EQ(organize(transposed(syntheticScan(1, 90))).width, 90U);
 }
 
-/// A recorded cloud with a label added: its pixel's number, modulo 251.
-RawMessage recordedScan(const std::string& file)
-{
-  pcl::PCLPointCloud2 cloud;
-  if (pcl::io::loadPCDFile(file, cloud) != 0) throw std::runtime_error("cannot read " + file);
-  std::vector<RawField> fields;
-  for (const auto& field : cloud.fields) fields.push_back({field.name, field.offset, field.datatype, field.count});
-  fields.push_back(rawField("label", cloud.point_step, NumberType::kUint8));
-  RawMessage message(cloud.height, cloud.width, fields, cloud.point_step + 1);
-  for (std::size_t i = 0; i < std::size_t{cloud.width} * cloud.height; ++i)
-  {
-    std::uint8_t* to = &message.bytes[i * message.header.point_step];
-    std::memcpy(to, &cloud.data[i * cloud.point_step], cloud.point_step);
-    to[cloud.point_step] = static_cast<std::uint8_t>(i % 251);
-  }
-  return message;
-}
-
 TEST(OrganizerRecorded, FindsTheOrientationOfDriversClouds)
 {
   REQUIRE_RECORDED_DATA(folder);
   for (const char* name : {"pandaset/0001.pcd", "pandaset/0002.pcd", "pandaset/0003.pcd", "ouster/os1_128_1024_0.pcd",
                            "ouster/os1_128_1024_1.pcd"})
   {
-    const auto scan = recordedScan(folder + "/" + name);
+    const auto scan = recordedMessage(folder + "/" + name);
     const auto turned = transposed(scan);
     for (const bool with_ring : {true, false})
     {
