@@ -1,7 +1,6 @@
 #include "lidar_panoptic_clustering/projection/organized_rows.h"
 
 #include <algorithm>
-#include <cmath>
 #include <limits>
 
 namespace lidar_panoptic_clustering
@@ -10,9 +9,11 @@ namespace
 {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 
+/// Without a branch, which a scattering of missing returns would make costly.
 bool isReturn(const ScanPoint& p)
 {
-  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F);
+  const float zero = p.x * 0.0F + p.y * 0.0F + p.z * 0.0F;  // NaN where one of them is infinite or NaN
+  return static_cast<bool>((zero == 0.0F) & ((p.x != 0.0F) | (p.y != 0.0F) | (p.z != 0.0F)));
 }
 
 void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)

@@ -57,6 +57,20 @@ bool isOneRow(const RawCloud& raw)
   return std::min(raw.width, raw.height) == 1 && std::max(raw.width, raw.height) > 1;
 }
 
+bool hasSeveralRings(const RawCloud& raw, const ScanFields& fields)
+{
+  if (fields.ring == nullptr) return false;
+  std::uint32_t first = 0, ring = 0;
+  for (std::size_t row = 0; row < raw.height; ++row)
+    for (std::size_t column = 0; column < raw.width; ++column)
+    {
+      readIds({raw.point(row, column), 0, 1}, *fields.ring, &ring, 0);
+      if (row == 0 && column == 0) first = ring;
+      if (ring != first) return true;
+    }
+  return false;
+}
+
 std::uint32_t columnsOfTurn(const SensorModel& sensor)
 {
   return static_cast<std::uint32_t>(std::lround(sensor.columns * kFullTurn / sensor.horizontal_fov_rad));
@@ -104,49 +118,60 @@ Organizer::Organizer(const OrganizerConfig& config)
 void Organizer::organize(const RawCloud& raw, OrganizedScan& out)
 {
   const ScanFields fields = findScanFields(raw, names_, config_.labels);
-  out.layout = layoutOf(raw, fields, out);
+  if (fixed_layout_)
+    out.layout = *fixed_layout_;
+  else if (!isOneRow(raw))
+    out.layout = Layout::kOrganized;
+  else
+    return organizeOneRow(raw, fields, out);
+
   if (out.layout == Layout::kOrganized) return takeRows(raw, fields, out);
-  if (out.layout != Layout::kMerged) return placePoints(raw, fields, out);
+  if (out.layout == Layout::kMerged) return takeInOrder(raw, fields, out);
+  if (out.layout == Layout::kRing) readRings(raw, fields);
+  readPoints(raw, fields, out);
+  placePoints(findRows(out), out);
+}
+
+void Organizer::organizeOneRow(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+{
+  if (hasSeveralRings(raw, fields))
+    out.layout = Layout::kRing, readRings(raw, fields);
+  else
+    out.layout = Layout::kUnfold;
+  readPoints(raw, fields, out);
+  std::uint32_t rows = findRows(out);
+  if (out.layout == Layout::kUnfold && !rows_.cameRingAfterRing(sensor_rows_))
+  {
+    out.layout = beams_ ? Layout::kBeams : Layout::kOrganized;
+    if (!beams_) return takeRows(raw, fields, out);
+    rows = findRows(out);
+  }
+  placePoints(rows, out);
+}
+
+void Organizer::takeInOrder(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+{
   placeRows(raw, fields, RowPlacement(), out);
   out.image.cloud.width = static_cast<std::uint32_t>(out.points.size());
   out.image.cloud.height = out.image.rings = 1;
 }
 
-Layout Organizer::layoutOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+std::uint32_t Organizer::findRows(const OrganizedScan& scan)
 {
-  if (fixed_layout_) return *fixed_layout_;
-  if (!isOneRow(raw)) return Layout::kOrganized;
-  if (fields.ring != nullptr)
-  {
-    readRings(raw, fields);
-    for (const std::uint32_t ring : ring_of_point_)
-      if (ring != ring_of_point_[0]) return Layout::kRing;
-  }
-  readPoints(raw, fields, out);
-  if (rows_.canBeUnfolded(out.points, sensor_rows_)) return Layout::kUnfold;
-  return beams_ ? Layout::kBeams : Layout::kOrganized;
+  if (scan.layout == Layout::kRing) return rows_.byRing(scan.points, ring_of_point_, sensor_rows_);
+  if (scan.layout == Layout::kBeams) return rows_.byBeam(scan.points, *beams_);
+  return rows_.byUnfolding(scan.points, sensor_rows_);
 }
 
-void Organizer::placePoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+void Organizer::placePoints(std::uint32_t rows, OrganizedScan& out)
 {
-  out.organized_input = false;
-  readPoints(raw, fields, out);
-  std::uint32_t rows = 0;
-  if (out.layout == Layout::kRing)
-  {
-    readRings(raw, fields);
-    rows = rows_.byRing(out.points, ring_of_point_, sensor_rows_);
-  }
-  else if (out.layout == Layout::kBeams)
-    rows = rows_.byBeam(out.points, *beams_);
-  else
-    rows = rows_.byUnfolding(out.points, sensor_rows_);
   const std::uint32_t columns = columns_ > 0 ? std::max(columns_, kMinColumns) : rows_.columnsOfTurn();
   if (std::size_t{rows} * columns > kMaxPixels)
     throw std::invalid_argument("expected at most " + std::to_string(kMaxPixels) + " pixels, found " +
                                 std::to_string(rows) + " rows and " + std::to_string(columns) + " columns");
+  out.organized_input = false;
   out.image.rings = rows;
-  projectDirections(out.points, out.labels, rows_.directions(), rows, columns, 0xFFFFFFFFU, out.image);
+  projector_.project(out.points, out.labels, rows_.directions(), rows, columns, 0xFFFFFFFFU, out.image);
 }
 
 void Organizer::readRings(const RawCloud& raw, const ScanFields& fields)

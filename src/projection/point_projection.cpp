@@ -7,6 +7,7 @@
 #include <algorithm>
 #include <stdexcept>
 #include <string>
+#include <utility>
 
 namespace lidar_panoptic_clustering
 {
@@ -24,37 +25,6 @@ LabelledPoint noReturn()
 float squaredRange(const ScanPoint& p)
 {
   return p.x * p.x + p.y * p.y + p.z * p.z;
-}
-
-void locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
-            Projection& out)
-{
-  const float columns_per_radian = static_cast<float>(columns) / (2.0F * kPi);
-  std::uint32_t pixel = columns / 2;
-  for (std::uint32_t i = 0; i < scan.size(); ++i)
-  {
-    const auto [azimuth, row] = directions[i];
-    if (azimuth == azimuth)  // false for NaN
-    {
-      // azimuth -pi is the same direction as +pi, which is column 0
-      const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian));
-      pixel = row * columns + (column < columns ? column : 0);
-      std::uint32_t& owner = out.owner_of_pixel[pixel];
-      if (owner == Projection::kNone || squaredRange(scan[i]) < squaredRange(scan[owner])) owner = i;
-    }
-    out.pixel_of_point[i] = pixel;
-    ++out.begin[pixel];
-  }
-}
-
-void listPoints(Projection& out)
-{
-  std::uint32_t end = 0;
-  for (auto& entry : out.begin) entry = end += entry;
-  out.points.resize(out.pixel_of_point.size());
-  // from the last point to the first, each list fills from its end, and `begin` becomes what its name says
-  for (auto i = static_cast<std::uint32_t>(out.points.size()); i-- > 0;)
-    out.points[--out.begin[out.pixel_of_point[i]]] = i;
 }
 
 void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, std::uint32_t class_bits,
@@ -75,14 +45,15 @@ void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>&
 }
 }  // namespace
 
-void projectDirections(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-                       const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
-                       std::uint32_t class_bits, Projection& out)
+void DirectionProjector::project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
+                                 const std::vector<PointDirection>& directions, std::uint32_t rows,
+                                 std::uint32_t columns, std::uint32_t class_bits, Projection& out)
 {
   const std::size_t pixels = std::size_t{rows} * columns;
   out.pixel_of_point.resize(scan.size());
   out.owner_of_pixel.assign(pixels, Projection::kNone);
   out.begin.assign(pixels + 1, 0);
+  out.points.resize(scan.size());
   out.cloud.points.resize(pixels);
   out.cloud.width = columns;
   out.cloud.height = rows;
@@ -90,6 +61,55 @@ void projectDirections(const std::vector<ScanPoint>& scan, const std::vector<std
   locate(scan, directions, columns, out);
   listPoints(out);
   paint(scan, labels, class_bits, out);
+}
+
+void DirectionProjector::locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions,
+                                std::uint32_t columns, Projection& out)
+{
+  hidden_.clear();
+  const float columns_per_radian = static_cast<float>(columns) / (2.0F * kPi);
+  std::uint32_t pixel = columns / 2;
+  for (std::uint32_t i = 0; i < scan.size(); ++i)
+  {
+    const auto [azimuth, row] = directions[i];
+    std::uint32_t hidden = i;
+    if (azimuth == azimuth)  // false for NaN
+    {
+      // azimuth -pi is the same direction as +pi, which is column 0
+      const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian));
+      pixel = row * columns + (column < columns ? column : 0);
+      std::uint32_t& owner = out.owner_of_pixel[pixel];
+      if (owner == Projection::kNone || squaredRange(scan[i]) < squaredRange(scan[owner])) std::swap(owner, hidden);
+    }
+    out.pixel_of_point[i] = pixel;
+    if (hidden != Projection::kNone) hidden_.push_back(hidden);
+  }
+}
+
+void DirectionProjector::listPoints(Projection& out) const
+{
+  // only pixels that hide points are visited out of order
+  for (const std::uint32_t point : hidden_) ++out.begin[out.pixel_of_point[point]];
+  std::uint32_t end = 0;
+  for (std::size_t pixel = 0; pixel < out.owner_of_pixel.size(); ++pixel)
+  {
+    end += out.begin[pixel] + (out.owner_of_pixel[pixel] != Projection::kNone);
+    out.begin[pixel] = end;
+  }
+  out.begin.back() = end;
+  // from the last point to the first, each list fills from its end, and `begin` becomes what its name says
+  for (auto point = hidden_.rbegin(); point != hidden_.rend(); ++point)
+    out.points[--out.begin[out.pixel_of_point[*point]]] = *point;
+  for (std::size_t pixel = out.owner_of_pixel.size(); pixel-- > 0;)
+  {
+    if (out.owner_of_pixel[pixel] == Projection::kNone) continue;
+    const std::uint32_t first = --out.begin[pixel], last = out.begin[pixel + 1];
+    out.points[first] = out.owner_of_pixel[pixel];
+    // an owner that lost its pixel stands behind those that came after it: each of them is passed by one owner at most
+    for (std::uint32_t k = first + 1; k < last; ++k)
+      for (std::uint32_t j = k; j > first && out.points[j] < out.points[j - 1]; --j)
+        std::swap(out.points[j], out.points[j - 1]);
+  }
 }
 
 PointProjector::PointProjector(const ProjectionConfig& config)
@@ -106,7 +126,7 @@ void PointProjector::project(const std::vector<ScanPoint>& scan, const std::vect
                                 std::to_string(scan.size()) + " points");
   out.rings = unfoldScan(scan, directions_);
   for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rows_ - 1);
-  projectDirections(scan, labels, directions_, rows_, columns_, 0xFFFFU, out);
+  projector_.project(scan, labels, directions_, rows_, columns_, 0xFFFFU, out);
 }
 
 std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, std::vector<PointDirection>& directions)

@@ -48,20 +48,20 @@ std::uint32_t RowFinder::byBeam(const std::vector<ScanPoint>& scan, const BeamTa
 
 std::uint32_t RowFinder::byUnfolding(const std::vector<ScanPoint>& scan, std::uint32_t rows)
 {
-  const std::uint32_t found = unfoldScan(scan, directions_);
-  const std::uint32_t rings = std::min(rows > 0 ? rows : std::max(1U, found), kMaxRings);
-  for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rings - 1);
+  unfolded_rings_ = unfoldScan(scan, directions_);
+  const std::uint32_t rings = std::min(rows > 0 ? rows : std::max(1U, unfolded_rings_), kMaxRings);
+  if (unfolded_rings_ > rings)
+    for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rings - 1);
   orderRings(scan, rings);
   return rings;
 }
 
-bool RowFinder::canBeUnfolded(const std::vector<ScanPoint>& scan, std::uint32_t rows)
+bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
 {
   constexpr std::uint32_t kMostRings = 256;
-  const std::uint32_t found = unfoldScan(scan, directions_);
-  if (found < 2 || found > kMostRings) return false;
-  if (rows > 0 && (found > rows || 2 * found < rows)) return false;
-  order_.look(scan, directions_, found);
+  const std::uint32_t rings = unfolded_rings_;
+  if (rings < 2 || rings > kMostRings) return false;
+  if (rows > 0 && (rings > rows || 2 * rings < rows)) return false;
   return order_.isMonotone();
 }
 
@@ -69,16 +69,23 @@ void RowFinder::orderRings(const std::vector<ScanPoint>& scan, std::uint32_t rin
 {
   order_.look(scan, directions_, rings);
   const auto& row_of_ring = order_.rowOfRing();
+  if (std::is_sorted(row_of_ring.begin(), row_of_ring.end())) return;
   for (PointDirection& direction : directions_) direction.row = row_of_ring[direction.row];
+}
+
+std::uint32_t RowFinder::fullestRow()
+{
+  returns_of_row_.assign(kMaxRings, 0);
+  const std::size_t step = directions_.size() < 64 * std::size_t{kMaxRings} ? 1 : 13;  // as in RingOrder
+  for (std::size_t i = 0; i < directions_.size(); i += step)
+    returns_of_row_[directions_[i].row] += !std::isnan(directions_[i].azimuth);
+  const auto fullest = std::max_element(returns_of_row_.begin(), returns_of_row_.end());
+  return static_cast<std::uint32_t>(fullest - returns_of_row_.begin());
 }
 
 std::uint32_t RowFinder::columnsOfTurn()
 {
-  returns_of_row_.assign(kMaxRings, 0);
-  for (const PointDirection& direction : directions_) returns_of_row_[direction.row] += !std::isnan(direction.azimuth);
-  const auto fullest = std::max_element(returns_of_row_.begin(), returns_of_row_.end());
-  const auto row = static_cast<std::uint32_t>(fullest - returns_of_row_.begin());
-
+  const std::uint32_t row = fullestRow();
   azimuths_.clear();
   for (const PointDirection& direction : directions_)
     if (direction.row == row && !std::isnan(direction.azimuth)) azimuths_.push_back(direction.azimuth);

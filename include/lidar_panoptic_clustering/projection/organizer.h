@@ -63,9 +63,11 @@ public:
   void organize(const RawCloud& raw, OrganizedScan& out);
 
 private:
-  Layout layoutOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
+  void organizeOneRow(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void takeRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
-  void placePoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
+  void takeInOrder(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
+  std::uint32_t findRows(const OrganizedScan& scan);
+  void placePoints(std::uint32_t rows, OrganizedScan& out);
   void readRings(const RawCloud& raw, const ScanFields& fields);
   Orientation orientationOf(const RawCloud& raw);
 
@@ -77,6 +79,7 @@ private:
   std::optional<BeamTable> beams_;
   LayoutProbe probe_;
   RowFinder rows_;
+  DirectionProjector projector_;
   std::vector<std::uint32_t> ring_of_point_;
   std::optional<Orientation> last_orientation_;  ///< a sensor does not turn: what an undecided scan goes by
   std::optional<bool> last_highest_first_;       ///< likewise

@@ -63,15 +63,27 @@ inline bool hasDirection(const ScanPoint& p)
   return squared_range > 0.0F && squared_range < std::numeric_limits<float>::infinity();  // false for NaN
 }
 
-/// Projects points whose rows are known; the column is the azimuth's. The nearest point owns the pixel, the first of
-/// equals. A point without a return stands in its predecessor's pixel, in any order of points, and owns none.
-///
-/// `directions`: one a point, rows below `rows`; `labels`: one a point, or empty for none (0); `class_bits`: the bits
-/// of a label that are its class. All but `rings` of `out` is filled. Linear in points and pixels; allocates only while
-/// buffers grow.
-void projectDirections(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-                       const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
-                       std::uint32_t class_bits, Projection& out);
+/// Projects points whose rows are known; the column is the azimuth's. Buffers are kept between scans.
+class DirectionProjector
+{
+public:
+  /// The nearest point owns the pixel, the first of equals. A point without a return stands in its predecessor's pixel,
+  /// in any order of points, and owns none.
+  ///
+  /// `directions`: one a point, rows below `rows`; `labels`: one a point, or empty for none (0); `class_bits`: the bits
+  /// of a label that are its class. All but `rings` of `out` is filled. Linear in points and pixels; allocates only
+  /// while buffers grow.
+  void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
+               const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
+               std::uint32_t class_bits, Projection& out);
+
+private:
+  void locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
+              Projection& out);
+  void listPoints(Projection& out) const;
+
+  std::vector<std::uint32_t> hidden_;  ///< points that own no pixel
+};
 
 /// The direction of each point of a scan whose points come ring after ring (see RingCounter): the row is its ring,
 /// from 0. A point without a return has its predecessor's ring. Returns the number of rings. Linear.
@@ -97,5 +109,6 @@ public:
 private:
   std::uint32_t rows_, columns_;
   std::vector<PointDirection> directions_;
+  DirectionProjector projector_;
 };
 }  // namespace lidar_panoptic_clustering

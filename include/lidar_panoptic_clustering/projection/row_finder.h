@@ -30,9 +30,9 @@ public:
   /// point is lost.
   std::uint32_t byUnfolding(const std::vector<ScanPoint>& scan, std::uint32_t rows);
 
-  /// Whether the points of the scan do come ring after ring: they fall into 2 to 256 rings (at most `rows` where these
-  /// are known, and at least half of them), whose elevations fall or rise all the way.
-  bool canBeUnfolded(const std::vector<ScanPoint>& scan, std::uint32_t rows);
+  /// Whether the points of the scan unfolded last did come ring after ring: they fell into 2 to 256 rings (at most
+  /// `rows` where these are known, and at least half of them), whose elevations fall or rise all the way.
+  bool cameRingAfterRing(std::uint32_t rows) const;
 
   /// Of the last scan, by point.
   const std::vector<PointDirection>& directions() const { return directions_; }
@@ -43,9 +43,11 @@ public:
   std::uint32_t columnsOfTurn();
 
 private:
+  std::uint32_t fullestRow();
   void orderRings(const std::vector<ScanPoint>& scan, std::uint32_t rings);
 
   RingOrder order_;
+  std::uint32_t unfolded_rings_ = 0;
   std::vector<PointDirection> directions_;
   std::vector<std::uint32_t> returns_of_row_;
   std::vector<float> azimuths_;
