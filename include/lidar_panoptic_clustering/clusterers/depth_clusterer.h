@@ -39,6 +39,7 @@ public:
   explicit DepthClusterer(const DepthConfig& config = {});
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+  bool needsScanLines() const override { return true; }
 
   /// Pairs of points compared in the last scan, for tests that bound the work.
   std::size_t pairsLookedAt() const { return looked_at_; }

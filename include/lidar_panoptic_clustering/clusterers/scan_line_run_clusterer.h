@@ -43,6 +43,7 @@ public:
   explicit ScanLineRunClusterer(const ScanLineRunConfig& config = {});
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+  bool needsScanLines() const override { return true; }
 
   /// Pairs of points and of runs compared in the last scan, for tests that bound the work.
   std::size_t pairsLookedAt() const { return looked_at_; }

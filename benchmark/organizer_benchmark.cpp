@@ -1,0 +1,113 @@
+// Time of the organizer on each layout, one thread, beside a plain copy of the labelled cloud it makes. Figures are
+// worth comparing within one run only.
+#include "unordered_clouds.h"
+
+#include "lidar_panoptic_clustering/projection/original_cloud.h"
+
+#include <benchmark/benchmark.h>
+
+#include <string>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr std::size_t kFrames = 10;  // together too large for the cache, as frames from a driver are
+
+/// A sensor's frames in one layout, and the same as labelled clouds.
+struct Frames
+{
+  std::vector<RawMessage> messages;
+  std::vector<LabelledCloud> images;
+};
+
+/// Returns and missing returns in the order of the organised cloud.
+RawMessage organisedMessage(const LabelledCloud& image)
+{
+  std::vector<std::uint32_t> all(image.size());
+  std::iota(all.begin(), all.end(), 0U);
+  RawMessage message = oneRow(image, all, Rings::kFromTheTop);
+  message.header.height = image.height;
+  message.header.width = image.width;
+  message.header.row_step = image.width * message.header.point_step;
+  return message;
+}
+
+RawMessage messageOf(const std::string& layout, const LabelledCloud& image)
+{
+  if (layout == "rows_are_rings") return organisedMessage(image);
+  if (layout == "rows_are_firings") return transposed(organisedMessage(image));
+  const Order returns = returnsOf(image);
+  if (layout == "ring") return oneRow(image, byFiring(returns, image.width), Rings::kFromTheBottom);
+  if (layout == "ring_shuffled") return oneRow(image, shuffled(returns), Rings::kFromTheBottom);
+  if (layout == "beams") return oneRow(image, byFiring(returns, image.width), Rings::kNone);
+  if (layout == "unfold") return oneRow(image, asKittiHasIt(returns, image), Rings::kNone);
+  return oneRow(image, returns, Rings::kNone);
+}
+
+Frames framesOf(const std::string& sensor, const std::string& layout)
+{
+  Frames frames;
+  for (std::size_t i = 0; i < kFrames; ++i)
+  {
+    frames.images.push_back(simulatedScan(sensor, 10 * i));
+    frames.messages.push_back(messageOf(layout, frames.images.back()));
+  }
+  return frames;
+}
+
+void plainCopy(benchmark::State& state, const std::string& sensor)
+{
+  const Frames frames = framesOf(sensor, "rows_are_rings");
+  LabelledCloud out;
+  std::size_t i = 0;
+  for (auto _ : state)
+  {
+    out = frames.images[i++ % kFrames];
+    benchmark::DoNotOptimize(out.points.data());
+    benchmark::ClobberMemory();
+  }
+}
+
+void organize(benchmark::State& state, const std::string& sensor, const std::string& layout)
+{
+  const Frames frames = framesOf(sensor, layout);
+  OrganizerConfig config;
+  if (layout == "beams") config.sensor = sensor;
+  if (layout == "merged") config.layout = layout;
+  Organizer organizer(config);
+  OrganizedScan out;
+  std::size_t i = 0;
+  for (auto _ : state) organizer.organize(frames.messages[i++ % kFrames].view(), out);
+  state.counters["points"] = static_cast<double>(out.points.size());
+}
+
+void addLabelsToOriginal(benchmark::State& state, const std::string& sensor)
+{
+  const Frames frames = framesOf(sensor, "rows_are_rings");
+  const std::vector<std::uint32_t> ids(frames.images[0].size(), 1);
+  OriginalCloud out;
+  std::size_t i = 0;
+  for (auto _ : state) addLabels(frames.messages[i++ % kFrames].view(), ids, ids, out);
+}
+}  // namespace
+}  // namespace lidar_panoptic_clustering
+
+int main(int argc, char** argv)
+{
+  using namespace lidar_panoptic_clustering;
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  for (const std::string sensor : {"vlp16", "hdl64e", "os1_128"})
+  {
+    const auto add = [&sensor](const std::string& name, const auto& body)
+    { benchmark::RegisterBenchmark((sensor + "/" + name).c_str(), body)->Unit(benchmark::kMillisecond); };
+    add("plain_copy", [sensor](benchmark::State& state) { plainCopy(state, sensor); });
+    for (const std::string layout :
+         {"rows_are_rings", "rows_are_firings", "merged", "ring", "ring_shuffled", "beams", "unfold"})
+      add(layout, [sensor, layout](benchmark::State& state) { organize(state, sensor, layout); });
+    add("add_labels", [sensor](benchmark::State& state) { addLabelsToOriginal(state, sensor); });
+  }
+  benchmark::RunSpecifiedBenchmarks();
+}
