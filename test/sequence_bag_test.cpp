@@ -7,9 +7,11 @@
 #include <rosbag/bag.h>
 #include <rosbag/view.h>
 #include <sensor_msgs/point_cloud2_iterator.h>
+#include <sys/resource.h>
 #include <sys/wait.h>
 #include <tf2_msgs/TFMessage.h>
 
+#include <csignal>
 #include <cstdlib>
 #include <iterator>
 
@@ -222,6 +224,22 @@ TEST_F(SequenceBag, IsThereWholeOrNotAtAll)
   EXPECT_NE(errorOf().find("000002.label"), std::string::npos);
   std::ifstream older(config_.output);
   EXPECT_EQ(std::string(std::istreambuf_iterator<char>(older), {}), "an older file");
+}
+
+TEST_F(SequenceBag, SaysSoWhereTheDiskIsFull)
+{
+  struct sigaction before;
+  sigaction(SIGXFSZ, nullptr, &before);
+  std::signal(SIGXFSZ, SIG_IGN);
+  rlimit limit;
+  getrlimit(RLIMIT_FSIZE, &limit);
+  const rlimit full{6000, limit.rlim_max};
+  setrlimit(RLIMIT_FSIZE, &full);
+  const std::string error = errorOf();
+  setrlimit(RLIMIT_FSIZE, &limit);
+  sigaction(SIGXFSZ, &before, nullptr);
+  EXPECT_EQ(error.find("cannot write " + config_.output + ": "), 0U) << error;
+  expectNothingWritten();
 }
 
 /// Exit status of the program, which is built into the folder of this test; what it prints goes to a file.

@@ -95,10 +95,12 @@ void run(const po::variables_map& given)
   const SequenceBagConfig config = configOf(given);
   noteInterrupts();
   std::optional<Progress> bar;
-  const auto progress = [&bar](std::uint64_t, std::uint64_t all)
+  const auto progress = [&bar](std::uint64_t done, std::uint64_t all)
   {
-    if (!bar) bar.emplace("semantickitti_to_bag", all);
-    bar->step();
+    if (done == 0)
+      bar.emplace("semantickitti_to_bag", all);
+    else
+      bar->step();
     return interrupted() == 0;
   };
   const SequenceBagSummary summary = writeSequenceBag(config, progress);

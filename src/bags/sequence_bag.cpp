@@ -13,7 +13,9 @@
 
 #include <cmath>
 #include <filesystem>
+#include <memory>
 #include <stdexcept>
+#include <vector>
 
 namespace lidar_panoptic_clustering
 {
@@ -41,14 +43,23 @@ public:
     attempt(
         [&]
         {
-          bag_.setCompression(compression);
-          bag_.open(aside_, rosbag::bagmode::Write);
+          bag_->setCompression(compression);
+          bag_->open(aside_, rosbag::bagmode::Write);
         });
   }
   ~AsideBag()
   {
+    if (saved_) return;
+    try
+    {
+      bag_->close();
+    }
+    catch (const std::exception&)
+    {
+      abandon(std::move(bag_));
+    }
     std::error_code ignored;
-    if (!saved_) std::filesystem::remove(aside_, ignored);
+    std::filesystem::remove(aside_, ignored);
   }
   AsideBag(const AsideBag&) = delete;
   AsideBag& operator=(const AsideBag&) = delete;
@@ -56,7 +67,7 @@ public:
   template <class Message>
   void write(const std::string& topic, const ros::Time& stamp, const Message& message)
   {
-    attempt([&] { bag_.write(topic, stamp, message); });
+    attempt([&] { bag_->write(topic, stamp, message); });
   }
 
   /// Returns the file's size [bytes].
@@ -65,7 +76,7 @@ public:
     attempt(
         [&]
         {
-          bag_.close();
+          bag_->close();
           std::filesystem::rename(aside_, path_);
         });
     saved_ = true;
@@ -86,8 +97,16 @@ private:
     }
   }
 
+  /// A bag's destructor writes what it still holds, and where that fails (a full disk) it ends the program: such a bag
+  /// is kept until the program ends by itself.
+  static void abandon(std::unique_ptr<rosbag::Bag> bag)
+  {
+    static auto* const abandoned = new std::vector<std::unique_ptr<rosbag::Bag>>;
+    abandoned->push_back(std::move(bag));
+  }
+
   std::string path_, aside_;
-  rosbag::Bag bag_;
+  std::unique_ptr<rosbag::Bag> bag_ = std::make_unique<rosbag::Bag>();
   bool saved_ = false;
 };
 
@@ -116,10 +135,11 @@ public:
     AsideBag bag(config_.output, compressionOf(config_.compression));
     const std::uint64_t left = sequence_.size() - config_.first;
     const std::uint64_t all = config_.count == 0 ? left : std::min(config_.count, left);
-    for (std::uint64_t done = 0; done < all; ++done)
+    for (std::uint64_t done = 0;; ++done)
     {
+      if (!progress(done, all)) throw std::runtime_error("interrupted");
+      if (done == all) break;
       writeScan(config_.first + done, bag);
-      if (!progress(done + 1, all)) throw std::runtime_error("interrupted");
     }
     summary_.bytes = bag.save();
     return summary_;

@@ -28,7 +28,8 @@ struct SequenceBagSummary
   bool labelled = false, ground_truth = false, poses = false;
 };
 
-/// Told after each scan how many are written and how many it will be; false ends the work without a file.
+/// Told at the start and after each scan how many are written and how many it will be; false ends the work without a
+/// file.
 using SequenceBagProgress = std::function<bool(std::uint64_t done, std::uint64_t all)>;
 
 /// Writes a sequence of a SemanticKITTI folder (semantic_kitti.h) as a rosbag file:
