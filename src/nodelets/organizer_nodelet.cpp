@@ -8,6 +8,7 @@
 #include <pcl_conversions/pcl_conversions.h>
 #include <pluginlib/class_list_macros.hpp>
 
+#include <boost/make_shared.hpp>
 #include <memory>
 #include <mutex>
 
@@ -72,10 +73,10 @@ private:
   {
     try
     {
-      const LabelledCloud::Ptr cloud(new LabelledCloud);
-      organizer_->organize(viewOf(*message), *cloud);
-      pcl_conversions::toPCL(message->header, cloud->header);
-      output_.publish(pcl::ros_ptr(cloud));
+      const auto scan = boost::make_shared<OrganizedScan>();
+      organizer_->organize(viewOf(*message), *scan);
+      pcl_conversions::toPCL(message->header, scan->image.cloud.header);
+      output_.publish(boost::shared_ptr<LabelledCloud>(scan, &scan->image.cloud));
       diagnostics_.processed();
     }
     catch (const std::exception& error)

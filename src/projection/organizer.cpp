@@ -1,188 +1,190 @@
 #include "lidar_panoptic_clustering/projection/organizer.h"
 
-#include <array>
+#include "lidar_panoptic_clustering/core/one_sweep.h"
+#include "lidar_panoptic_clustering/core/parameters.h"
+#include "lidar_panoptic_clustering/projection/organized_rows.h"
+
+#include <algorithm>
 #include <cmath>
-#include <limits>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
-/// How much neighbours differ, in one direction of the cloud.
-struct Difference
-{
-  double sum = 0.0;
-  std::size_t pairs = 0;
+/// Above what a sensor's own beam offsets leave after destaggering, below the least an Ouster's staggered cloud has.
+constexpr double kMaxStaggeredColumns = 2.5;
 
-  void add(double difference) { sum += std::abs(difference), ++pairs; }
-  double mean() const { return sum / static_cast<double>(pairs); }
-};
-
-struct Differences
-{
-  Difference along_rows, along_columns;
-
-  bool enough() const
-  {
-    constexpr std::size_t kEnoughPairs = 16;
-    return along_rows.pairs >= kEnoughPairs && along_columns.pairs >= kEnoughPairs;
-  }
-
-  /// The rows are rings when what is constant on a ring varies less along rows than along columns, and by a clear
-  /// factor, for a wrong guess costs more than none: elevation varies 17 times less and more in recorded PandaSet and
-  /// Ouster clouds, still 2.4 times with the frame tilted by 30 degrees.
-  std::optional<Orientation> decide() const
-  {
-    constexpr double kClearly = 0.5;
-    if (!enough()) return std::nullopt;
-    if (along_rows.mean() < kClearly * along_columns.mean()) return Orientation::kRowsAreRings;
-    if (along_columns.mean() < kClearly * along_rows.mean()) return Orientation::kRowsAreFirings;
-    return std::nullopt;
-  }
-};
-
-bool isReturn(float x, float y, float z)
-{
-  return std::isfinite(x) && std::isfinite(y) && std::isfinite(z) && (x != 0.0F || y != 0.0F || z != 0.0F);
-}
-
-/// Reads what is constant along a ring off single pixels: elevation, and the ring's number where it is sent.
-class PixelReader
-{
-public:
-  PixelReader(const RawCloud& cloud, const std::string& ring_field)
-      : cloud_(cloud),
-        xyz_{findField(cloud, "x"), findField(cloud, "y"), findField(cloud, "z")},
-        ring_(findField(cloud, ring_field))
-  {
-  }
-
-  struct Pixel
-  {
-    double elevation = 0.0;  ///< [rad]
-    double ring = 0.0;
-  };
-
-  /// Nothing where there is no return.
-  std::optional<Pixel> read(std::size_t row, std::size_t column) const
-  {
-    const PointRun run{cloud_.point(row, column), cloud_.point_step, 1};
-    std::array<float, 3> p;
-    for (std::size_t i = 0; i < 3; ++i) readFloats(run, *xyz_[i], &p[i], sizeof(float));
-    if (!isReturn(p[0], p[1], p[2])) return std::nullopt;
-
-    Pixel pixel;
-    pixel.elevation = std::atan2(double{p[2]}, std::hypot(double{p[0]}, double{p[1]}));
-    if (ring_ != nullptr)
-    {
-      std::uint32_t ring = 0;
-      readIds(run, *ring_, &ring, sizeof(ring));
-      pixel.ring = ring;
-    }
-    return pixel;
-  }
-
-private:
-  const RawCloud& cloud_;
-  std::array<const RawField*, 3> xyz_;
-  const RawField* ring_;
-};
-
-struct Evidence
-{
-  Differences ring, elevation;  ///< of the numbers of rings: 0 for the same, 1 for another
-};
-
-/// Compares pixels, evenly spread over the cloud, `stride` apart in row-major order, with their neighbours.
-Evidence gather(const RawCloud& cloud, const PixelReader& reader, std::size_t stride)
-{
-  Evidence evidence;
-  const std::size_t width = cloud.width, height = cloud.height;
-  for (std::size_t i = 0; i < width * height; i += stride)
-  {
-    const std::size_t row = i / width, column = i % width;
-    const auto here = reader.read(row, column);
-    if (!here) continue;
-    const auto compare = [&](const auto& other, Difference Differences::*direction)
-    {
-      if (!other) return;
-      (evidence.ring.*direction).add(here->ring == other->ring ? 0.0 : 1.0);
-      (evidence.elevation.*direction).add(here->elevation - other->elevation);
-    };
-    if (column + 1 < width) compare(reader.read(row, column + 1), &Differences::along_rows);
-    if (row + 1 < height) compare(reader.read(row + 1, column), &Differences::along_columns);
-  }
-  return evidence;
-}
+constexpr double kFullTurn = 6.28318530717958648;
+constexpr std::uint32_t kMinColumns = 16;
+constexpr std::size_t kMaxPixels = std::size_t{1} << 22;  // 256 scan lines of 16384 columns
 
 /// Nothing for "auto".
-std::optional<Orientation> orientationFromName(const std::string& name)
+std::optional<Layout> layoutFromName(const std::string& name)
 {
-  if (name == "auto") return std::nullopt;
-  if (name == "rows_are_rings") return Orientation::kRowsAreRings;
-  if (name == "rows_are_firings") return Orientation::kRowsAreFirings;
-  throw std::invalid_argument("orientation: expected one of auto, rows_are_rings, rows_are_firings, found '" + name +
-                              "'");
+  const auto& names = layoutNames();
+  for (std::size_t i = 1; i < names.size(); ++i)
+    if (names[i] == name) return static_cast<Layout>(i - 1);
+  return std::nullopt;
 }
 
-void markNoReturns(LabelledCloud& cloud)
+[[noreturn]] void throwStaggered(double columns)
 {
-  constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
-  for (auto& p : cloud.points)
-    if (!isReturn(p.x, p.y, p.z)) p.x = p.y = p.z = kNaN;
+  throw std::invalid_argument(
+      "expected columns of one azimuth, found neighbouring scan lines " + std::to_string(std::lround(columns)) +
+      " columns apart in the mean: switch on destaggering in the driver (ouster_ros: destagger:=true), or set the "
+      "parameter layout to 'ring', which places the points by their azimuth");
+}
+
+[[noreturn]] void throwNoScanLines(const RawCloud& raw)
+{
+  throw std::invalid_argument(
+      "expected an organised cloud (rows and columns), or points with a field 'ring', in the order of rings, or of a "
+      "sensor that is named, found one row of " +
+      std::to_string(raw.width * std::size_t{raw.height}) + " points with " + describeFields(raw) +
+      ": switch on organised output in the driver (velodyne_pointcloud: organize_cloud:=true), set the parameter "
+      "sensor, or set layout to 'merged' where the points are several lidars'");
+}
+
+[[noreturn]] void throwNoRing(const RawCloud& raw)
+{
+  throw std::invalid_argument("expected a field 'ring', 'channel' or one named by the parameter ring_field, found " +
+                              describeFields(raw));
+}
+
+bool isOneRow(const RawCloud& raw)
+{
+  return std::min(raw.width, raw.height) == 1 && std::max(raw.width, raw.height) > 1;
+}
+
+std::uint32_t columnsOfTurn(const SensorModel& sensor)
+{
+  return static_cast<std::uint32_t>(std::lround(sensor.columns * kFullTurn / sensor.horizontal_fov_rad));
+}
+
+void readPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+{
+  out.points.resize(std::size_t{raw.width} * raw.height);
+  out.labels.resize(out.points.size());
+  for (std::size_t row = 0; row < raw.height && raw.width > 0; ++row)
+    readScan(raw, fields, row, 0, raw.width, &out.points[row * raw.width], &out.labels[row * raw.width]);
+}
+
+const OrganizerConfig& validated(const OrganizerConfig& config)
+{
+  validateParameters(config);
+  return config;
 }
 }  // namespace
 
-const std::vector<std::string>& orientationNames()
+const std::vector<std::string>& layoutNames()
 {
-  static const std::vector<std::string> names = {"auto", "rows_are_rings", "rows_are_firings"};
+  static const std::vector<std::string> names = {"auto", "organized", "ring", "beams", "unfold", "merged"};
   return names;
 }
 
-std::optional<Orientation> detectOrientation(const RawCloud& cloud, const std::string& ring_field)
+Organizer::Organizer(const OrganizerConfig& config)
+    : config_(validated(config)),
+      names_{config.label_field, config.intensity_field, config.ring_field},
+      fixed_layout_(layoutFromName(config.layout)),
+      fixed_orientation_(orientationFromName(config.orientation)),
+      columns_(static_cast<std::uint32_t>(config.columns))
 {
-  checkLayout(cloud, {"x", "y", "z"}, {ring_field});
-  const PixelReader reader(cloud, ring_field);
-
-  // an odd stride visits all columns of a cloud whose width is a power of two
-  constexpr std::size_t kPixels = 2048;
-  const std::size_t stride = (std::size_t{cloud.width} * cloud.height / kPixels) | 1U;
-  Evidence evidence = gather(cloud, reader, stride);
-  if (!evidence.elevation.enough() && stride > 1) evidence = gather(cloud, reader, 1);
-
-  const auto by_ring = evidence.ring.decide();
-  return by_ring ? by_ring : evidence.elevation.decide();
+  if (config.sensor != "auto")
+  {
+    const SensorModel sensor = SensorModel::load(config.sensor);
+    sensor_rows_ = sensor.rows();
+    beams_.emplace(sensor.elevations_rad);
+    if (columns_ == 0) columns_ = columnsOfTurn(sensor);
+  }
+  if (fixed_layout_ == Layout::kBeams && !beams_)
+    throw std::invalid_argument("expected a sensor for the layout 'beams' (parameter sensor), found 'auto'");
 }
 
-Organizer::Organizer(const OrganizerConfig& config) : config_(config), fixed_(orientationFromName(config.orientation))
+void Organizer::organize(const RawCloud& raw, OrganizedScan& out)
 {
+  const ScanFields fields = findScanFields(raw, names_, config_.labels);
+  out.layout = layoutOf(raw, fields, out);
+  if (out.layout == Layout::kOrganized) return takeRows(raw, fields, out);
+  if (out.layout != Layout::kMerged) return placePoints(raw, fields, out);
+  placeRows(raw, fields, RowPlacement(), out);
+  out.image.cloud.width = static_cast<std::uint32_t>(out.points.size());
+  out.image.cloud.height = out.image.rings = 1;
 }
 
-void Organizer::organize(const RawCloud& raw, LabelledCloud& out)
+Layout Organizer::layoutOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
 {
-  if (raw.height == 1 && raw.width > 1)
-    throw std::invalid_argument("expected an organised cloud (rows and columns), found one row of " +
-                                std::to_string(raw.width) +
-                                " points: switch on organised output in the driver "
-                                "(velodyne_pointcloud: organize_cloud:=true)");
-  if (findField(raw, config_.label_field) == nullptr)
-    throw std::invalid_argument("expected a field '" + config_.label_field +
-                                "' with class ids (named by the parameter label_field), found " + describeFields(raw));
+  if (fixed_layout_) return *fixed_layout_;
+  if (!isOneRow(raw)) return Layout::kOrganized;
+  if (fields.ring != nullptr)
+  {
+    readRings(raw, fields);
+    for (const std::uint32_t ring : ring_of_point_)
+      if (ring != ring_of_point_[0]) return Layout::kRing;
+  }
+  readPoints(raw, fields, out);
+  if (rows_.canBeUnfolded(out.points, sensor_rows_)) return Layout::kUnfold;
+  return beams_ ? Layout::kBeams : Layout::kOrganized;
+}
 
-  LabelledFields names;
-  names.label = config_.label_field;
-  names.intensity = config_.intensity_field;
-  const auto orientation = orientationOf(raw);
-  readLabelled(raw, names, out, orientation == Orientation::kRowsAreRings ? RowOrder::kAsSent : RowOrder::kTransposed);
-  markNoReturns(out);
+void Organizer::placePoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+{
+  out.organized_input = false;
+  readPoints(raw, fields, out);
+  std::uint32_t rows = 0;
+  if (out.layout == Layout::kRing)
+  {
+    readRings(raw, fields);
+    rows = rows_.byRing(out.points, ring_of_point_, sensor_rows_);
+  }
+  else if (out.layout == Layout::kBeams)
+    rows = rows_.byBeam(out.points, *beams_);
+  else
+    rows = rows_.byUnfolding(out.points, sensor_rows_);
+  const std::uint32_t columns = columns_ > 0 ? std::max(columns_, kMinColumns) : rows_.columnsOfTurn();
+  if (std::size_t{rows} * columns > kMaxPixels)
+    throw std::invalid_argument("expected at most " + std::to_string(kMaxPixels) + " pixels, found " +
+                                std::to_string(rows) + " rows and " + std::to_string(columns) + " columns");
+  out.image.rings = rows;
+  projectDirections(out.points, out.labels, rows_.directions(), rows, columns, 0xFFFFFFFFU, out.image);
+}
+
+void Organizer::readRings(const RawCloud& raw, const ScanFields& fields)
+{
+  ring_of_point_.resize(std::size_t{raw.width} * raw.height);
+  if (fields.ring != nullptr)
+  {
+    for (std::size_t row = 0; row < raw.height; ++row)
+      readIds({raw.point(row, 0), raw.point_step, raw.width}, *fields.ring, &ring_of_point_[row * raw.width],
+              sizeof(std::uint32_t));
+    return;
+  }
+  if (isOneRow(raw)) throwNoRing(raw);
+  probe_.look(raw, fields);
+  const bool rows_are_rings = orientationOf(raw) == Orientation::kRowsAreRings;
+  for (std::uint32_t i = 0; i < ring_of_point_.size(); ++i)
+    ring_of_point_[i] = rows_are_rings ? i / raw.width : i % raw.width;
+}
+
+void Organizer::takeRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+{
+  probe_.look(raw, fields);
+  RowPlacement placement;
+  placement.orientation = orientationOf(raw);
+  if (const auto found = probe_.highestFirst(placement.orientation)) last_highest_first_ = found;
+  placement.highest_first = last_highest_first_.value_or(true);
+  const bool plausible = probe_.orientation().value_or(placement.orientation) == placement.orientation;
+  if (plausible && probe_.staggeredColumns(placement.orientation) > kMaxStaggeredColumns)
+    throwStaggered(probe_.staggeredColumns(placement.orientation));
+  placeRows(raw, fields, placement, out);
+  if (out.image.cloud.height == 1 && !comesInOneSweep(out.image.cloud)) throwNoScanLines(raw);
 }
 
 Orientation Organizer::orientationOf(const RawCloud& raw)
 {
-  if (fixed_) return *fixed_;
-  if (const auto detected = detectOrientation(raw, config_.ring_field)) last_ = detected;
-  if (last_) return *last_;
+  if (fixed_orientation_) return *fixed_orientation_;
+  if (const auto found = probe_.orientation()) last_orientation_ = found;
+  if (last_orientation_) return *last_orientation_;
   // lidars have fewer rings than firings
   return raw.height <= raw.width ? Orientation::kRowsAreRings : Orientation::kRowsAreFirings;
 }
