@@ -2,11 +2,17 @@
 #include "bags/sequence_bag.h"
 #include "graph_fixture.h"
 #include "labelled_scene.h"
+#include "nodelets/cloud_subscription.h"
+#include "recorded_data.h"
 #include "tiny_dataset.h"
 
+#include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
+#include "lidar_panoptic_clustering/projection/organizer.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
 
 #include <pcl_ros/point_cloud.h>
+#include <rosbag/bag.h>
+#include <rosbag/view.h>
 
 #include <cstring>
 #include <map>
@@ -140,6 +146,47 @@ TEST_F(SequenceBagGraph, GivesTheLabelsAndInstancesThatThePlayerGives)
       EXPECT_EQ(played.at(returns)->header.frame_id, "velodyne");
     }
   }
+}
+
+// In recorded scans points share pixels, and rings begin and end anywhere: organised by the bag's field ring, each
+// point must come to lie where the player puts it.
+TEST(RecordedSequenceBag, IsOrganisedAsThePlayerDoes)
+{
+  REQUIRE_RECORDED_DATA(data);
+  SequenceBagConfig config;
+  config.dataset = data + "/semantickitti";
+  config.output = (fs::temp_directory_path() / ("lidar_panoptic_recorded_" + std::to_string(getpid()))).string();
+  config.count = 3;
+  OrganizerConfig organizer_config;
+  organizer_config.columns = config.projection.columns;
+  Organizer organizer(organizer_config);
+  OrganizedScan organized;
+  PointProjector projector(config.projection);
+  Projection expected;
+  for (const std::string sequence : {"00", "05", "07"})
+  {
+    config.sequence = sequence;
+    writeSequenceBag(config, [](std::uint64_t, std::uint64_t) { return true; });
+    const SemanticKittiSequence scans(config.dataset, sequence);
+    std::vector<ScanPoint> points;
+    std::vector<std::uint32_t> labels;
+    std::size_t scan = 0;
+    rosbag::Bag bag(config.output);
+    rosbag::View messages(bag, rosbag::TopicQuery("/points"));
+    for (const auto& message : messages)
+    {
+      organizer.organize(viewOf(*message.instantiate<sensor_msgs::PointCloud2>()), organized);
+      scans.readScan(scan, points);
+      scans.readLabels(scan++, points.size(), labels);
+      projector.project(points, labels, expected);
+      EXPECT_EQ(organized.layout, Layout::kRing);
+      ASSERT_EQ(organized.image.pixel_of_point, expected.pixel_of_point) << sequence;
+      EXPECT_EQ(organized.image.owner_of_pixel, expected.owner_of_pixel) << sequence;
+      for (std::size_t i = 0; i < labels.size(); ++i) ASSERT_EQ(organized.labels[i], rawClass(labels[i])) << sequence;
+    }
+    EXPECT_EQ(scan, 3U);
+  }
+  fs::remove(config.output);
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering
