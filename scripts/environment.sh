@@ -21,12 +21,12 @@ required_packages() {
   if [ ! -e "$ros_setup" ]; then
     printf '%s\n' catkin libnodeletlib-dev libpcl-ros-dev libdynamic-reconfigure-config-init-mutex-dev \
       python3-dynamic-reconfigure libdiagnostic-updater-dev libvisualization-msgs-dev libtf2-ros-dev \
-      librostest-dev python3-rostest python3-roslaunch libnodeletlib-tools tf2-tools rosbash python3-rostopic \
-      python3-rosnode python3-rosservice python3-rosmsg python3-rosbag topic-tools python3-sensor-msgs \
+      librosbag-storage-dev librostest-dev python3-rostest python3-roslaunch libnodeletlib-tools tf2-tools rosbash \
+      python3-rostopic python3-rosnode python3-rosservice python3-rosmsg python3-rosbag topic-tools python3-sensor-msgs \
       python3-visualization-msgs python3-diagnostic-msgs python3-nodelet python3-tf2-ros rviz
   elif dpkg-query -W ros-noetic-roscpp > /dev/null 2>&1; then  # not where it was built from source
-    for name in catkin diagnostic-updater dynamic-reconfigure nodelet pcl-ros pluginlib roslaunch rostest rviz tf2-ros \
-      visualization-msgs; do
+    for name in catkin diagnostic-updater dynamic-reconfigure nodelet pcl-ros pluginlib rosbag-storage roslaunch rostest \
+      rviz tf2-ros visualization-msgs; do
       echo "ros-noetic-$name"
     done
   fi

@@ -177,8 +177,12 @@ TEST(RayCaster, EqualsEverySolidOnEveryBeam)
 }
 
 /// Against a ray tracer of its own in double precision, straight from the solids: nothing may be culled wrongly, and
-/// sensor pose, axes and beams must fit together.
-TEST(RayCaster, FindsTheRangesOfTheWorld)
+/// sensor pose, axes and beams must fit together; in sectors too, of which the widest leaves out little of the rear.
+class RayCasterOfView : public testing::TestWithParam<int>
+{
+};
+
+TEST_P(RayCasterOfView, FindsTheRangesOfTheWorld)
 {
   Street street({9, 0.8, 0.5}, {9, 8.0, 0.8, 0.5});
   std::vector<Solid> solids, opaque;
@@ -186,7 +190,8 @@ TEST(RayCaster, FindsTheRangesOfTheWorld)
   for (const Solid& solid : solids)
     if (solid.surface.transmission == 0.0F && solid.surface.depth_m == 0.0F) opaque.push_back(solid);
   const Pose sensor{24.0, 0.4, 1.73, 0.7};
-  const SensorModel model = smallModel();
+  SensorModel model = smallModel();
+  model.horizontal_fov_rad = GetParam() * M_PI / 180.0;
   RayCaster caster(model);
   caster.cast(opaque, sensor, 0);
 
@@ -195,7 +200,7 @@ TEST(RayCaster, FindsTheRangesOfTheWorld)
     for (std::uint32_t column = 0; column < 128; ++column)
     {
       const double elevation = model.elevations_rad[row],
-                   heading = sensor.yaw + M_PI - (column + 0.5) * 2.0 * M_PI / 128;
+                   heading = sensor.yaw + (0.5 - (column + 0.5) / 128) * model.horizontal_fov_rad;
       const Eigen::Vector3d ray(std::cos(elevation) * std::cos(heading), std::cos(elevation) * std::sin(heading),
                                 std::sin(elevation));
       double nearest = elevation < 0.0 ? std::min(120.0, 1.73 / std::sin(-elevation)) : 120.0;
@@ -213,6 +218,7 @@ TEST(RayCaster, FindsTheRangesOfTheWorld)
     }
   EXPECT_LE(differences, ends / 200);  // beams that graze an edge
 }
+INSTANTIATE_TEST_SUITE_P(Degrees, RayCasterOfView, testing::Values(360, 350, 180, 90, 10));
 
 TEST(RayCaster, WhatStandsBehindAWallIsNotSeen)
 {

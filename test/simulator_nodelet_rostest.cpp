@@ -65,6 +65,17 @@ TEST_F(SimulatorGraph, PublishesOrganisedScansTruthAndPoseWithOneStamp)
   EXPECT_EQ(transforms->transforms[0].child_frame_id, "lidar");
 }
 
+TEST_F(SimulatorGraph, HasTheRingsAndFiringsOfTheSensorAskedFor)
+{
+  ros::param::set(name_ + "/sensor", "vlp16");
+  ASSERT_TRUE(start());
+  Probe<LabelledCloud> output(name_ + "/output");
+  const auto cloud = output.next();
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(cloud->height, 16U);
+  EXPECT_EQ(cloud->width, 1808U);
+}
+
 TEST_F(SimulatorGraph, EndsAfterTheFramesAskedFor)
 {
   ros::param::set(name_ + "/frames", 3);
@@ -109,6 +120,9 @@ TEST_F(SimulatorGraph, RefusesToLoadWithAParameterItCannotUse)
   ros::param::set(name_ + "/frame_id", "/lidar");
   EXPECT_NE(refusal().find("frame_id"), std::string::npos);
   ros::param::set(name_ + "/frame_id", "lidar");
+  ros::param::set(name_ + "/sensor", "vlp17");
+  EXPECT_NE(refusal().find("sensor 'vlp17': cannot be read; expected a YAML file or one of"), std::string::npos);
+  ros::param::set(name_ + "/sensor", "vlp16");
   EXPECT_TRUE(start());
 }
 }  // namespace

@@ -1,9 +1,9 @@
-#include "lidar_panoptic_clustering/core/instance_colors.h"
+#include "bags/pose_message.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
+#include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 #include "nodelets/parameter_server.h"
 
-#include <geometry_msgs/TransformStamped.h>
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>
 #include <pcl_ros/point_cloud.h>
@@ -67,46 +67,6 @@ std::string readFrameId(const ros::NodeHandle& nh)
   if (frame_id.empty() || frame_id.front() == '/')
     throw std::invalid_argument("parameter frame_id must be a name without a leading slash, but is '" + frame_id + "'");
   return frame_id;
-}
-
-/// The pixels of `projection` with the true label of each one's owner, and the true instance where that is a thing.
-void paintTruth(const Projection& projection, const std::vector<std::uint32_t>& labels, const ClassTable& table,
-                PanopticCloud& out)
-{
-  const auto& cloud = projection.cloud;
-  out.points.resize(cloud.size());
-  out.width = cloud.width, out.height = cloud.height;
-  out.is_dense = cloud.is_dense;
-  for (std::size_t pixel = 0; pixel < cloud.size(); ++pixel)
-  {
-    auto& to = out.points[pixel];
-    to.getVector4fMap() = cloud.points[pixel].getVector4fMap();
-    to.intensity = cloud.points[pixel].intensity;
-    const auto owner = projection.owner_of_pixel[pixel];
-    if (owner == Projection::kNone) continue;
-    to.label = rawClass(labels[owner]);
-    const auto& info = table[table.find(to.label)];
-    to.rgb = info.rgb;
-    to.instance = info.isThing() ? rawInstance(labels[owner]) : 0;
-    if (to.instance > 0) to.rgb = seriesColor(to.instance);
-  }
-}
-
-geometry_msgs::TransformStamped transformOf(const Eigen::Isometry3d& pose, const pcl::PCLHeader& header)
-{
-  geometry_msgs::TransformStamped transform;
-  pcl_conversions::fromPCL(header.stamp, transform.header.stamp);
-  transform.header.frame_id = "world";
-  transform.child_frame_id = header.frame_id;
-  const Eigen::Quaterniond rotation(pose.linear());
-  transform.transform.translation.x = pose.translation().x();
-  transform.transform.translation.y = pose.translation().y();
-  transform.transform.translation.z = pose.translation().z();
-  transform.transform.rotation.x = rotation.x();
-  transform.transform.rotation.y = rotation.y();
-  transform.transform.rotation.z = rotation.z();
-  transform.transform.rotation.w = rotation.w();
-  return transform;
 }
 }  // namespace
 
@@ -200,11 +160,12 @@ private:
     pcl::PCLHeader header;
     header.frame_id = frame_id_;
     header.stamp = nextStamp(scan);
-    if (!poses_.empty()) broadcaster_->sendTransform(transformOf(poses_[scan], header));
+    if (!poses_.empty())
+      broadcaster_->sendTransform(transformOf(poses_[scan], frame_id_, pcl_conversions::fromPCL(header.stamp)));
     if (!truth_.empty() && ground_truth_.getNumSubscribers() > 0)
     {
       const PanopticCloud::Ptr cloud(new PanopticCloud);
-      paintTruth(projection_, truth_, *table_, *cloud);
+      paintGroundTruth(projection_, truth_, *table_, *cloud);
       cloud->header = header;
       ground_truth_.publish(pcl::ros_ptr(cloud));
     }
