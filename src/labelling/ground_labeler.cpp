@@ -21,12 +21,16 @@ bool GroundLabeler::isStructure(const ScanComponent& c) const
   const RectangleSize size = c.footprint.smallestRectangle();
   const bool tall = c.top > 2.2F;
   const bool maybe_tall = tall || c.open_top;
+  const bool footed = c.edges >= 5;
+  const float undercut = footed ? static_cast<float>(c.undercut) / static_cast<float>(c.edges) : 0.0F;
+  if (c.point_count < 8) return true;
   if (maybe_tall && size.length < 1.0F && (tall || c.bottom > 0.5F)) return true;
-  if (c.triples >= 15 && static_cast<float>(c.rough) > 0.45F * static_cast<float>(c.triples)) return true;
-  const bool grounded = c.edges >= 5 && 2 * c.undercut < c.edges;
-  if (maybe_tall && c.edges < 3 && size.width < 0.6F) return true;
-  if (maybe_tall && grounded) return true;
-  if (grounded && size.length > 3.0F) return true;
+  const bool rider = undercut >= 0.5F && size.length < 2.2F && !tall;
+  if (c.triples >= 10 && !rider && static_cast<float>(c.rough) > 0.45F * static_cast<float>(c.triples)) return true;
+  if (maybe_tall && !footed && c.bottom > 0.4F && size.width < 1.0F) return true;
+  if (maybe_tall && footed && undercut < 0.5F) return true;
+  if (footed && undercut < 0.35F && size.length > 1.5F) return true;
+  if (size.length > 4.0F && size.width < 0.3F) return true;
   return false;
 }
 

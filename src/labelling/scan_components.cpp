@@ -79,7 +79,7 @@ void ScanComponents::gather(const LabelledCloud& cloud, const std::vector<float>
       if (std::isnan(height[down])) continue;
       if (component_of_[down] != kNone) break;
       ++c.edges;
-      if (std::hypot(cloud.points[down].x, cloud.points[down].y) > std::hypot(p.x, p.y)) ++c.undercut;
+      if (std::hypot(cloud.points[down].x, cloud.points[down].y) > std::hypot(p.x, p.y) + 0.15F) ++c.undercut;
       if (height[pixel] < 0.25F) ++c.feet;
       break;
     }
