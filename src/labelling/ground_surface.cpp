@@ -68,9 +68,10 @@ std::uint32_t sectorOf(float x, float y)
 
 GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), distance_(kCells), unseen_(kCells) {}
 
-bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<float>& height)
+bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope,
+                            std::vector<GroundedReturn>& returns)
 {
-  sortIntoCells(cloud, max_range_m);
+  sortIntoCells(cloud, max_range_m, returns);
   const bool found = findPlane();
   if (found)
   {
@@ -78,30 +79,29 @@ bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float
     bridge();
   }
   else
-  {
-    std::fill(ground_.begin(), ground_.end(), 0.0F);
-    std::copy(kGrid.middle.begin(), kGrid.middle.end(), distance_.begin());
-    for (std::uint32_t s = 1; s < kSectors; ++s)
-      std::copy(kGrid.middle.begin(), kGrid.middle.end(), distance_.begin() + s * kBins);
-  }
-  writeHeights(cloud, height);
+    flatten();
+  writeHeights(cloud, returns);
   return found;
 }
 
-void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m)
+void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns)
 {
   const float max_squared_range = max_range_m * max_range_m;
   lowest_.assign(kCells, {0.0F, 0.0F, kFar});
   cell_of_.resize(cloud.points.size());
-  range_of_.resize(cloud.points.size());
+  returns.resize(cloud.points.size());
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
   {
     const LabelledPoint& p = cloud.points[i];
     const float squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
-    cell_of_[i] = kNoCell;
-    if (!(squared > 0.0F && whole <= max_squared_range)) continue;  // NaN and infinity too
-    range_of_[i] = std::sqrt(squared);
-    const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(range_of_[i]);
+    if (!(squared > 0.0F && whole <= max_squared_range))  // NaN and infinity too
+    {
+      cell_of_[i] = kNoCell;
+      returns[i] = {kNaN, kNaN};
+      continue;
+    }
+    returns[i].range = std::sqrt(squared);
+    const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(returns[i].range);
     cell_of_[i] = static_cast<std::uint16_t>(cell);
     if (p.z < lowest_[cell].z) lowest_[cell] = {p.x, p.y, p.z};
   }
@@ -235,27 +235,31 @@ void GroundSurface::bridge()
   }
 }
 
-void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<float>& height) const
+/// No ground but the plane.
+void GroundSurface::flatten()
 {
-  height.resize(cloud.points.size());
+  std::fill(ground_.begin(), ground_.end(), 0.0F);
+  for (std::uint32_t cell = 0; cell < kCells; ++cell) distance_[cell] = kGrid.middle[cell % kBins];
+}
+
+void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const
+{
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
   {
-    if (cell_of_[i] == kNoCell)
-    {
-      height[i] = kNaN;
-      continue;
-    }
+    if (cell_of_[i] == kNoCell) continue;
     const LabelledPoint& p = cloud.points[i];
-    const std::uint32_t cell = cell_of_[i], bin = cell % kBins;
-    std::uint32_t a = cell, b = cell;
-    if (range_of_[i] < distance_[cell])
-      a -= bin > 0 ? 1 : 0;
+    const float range = returns[i].range;
+    // on the line between the grounds of two cells, held beyond the first and the last
+    std::uint32_t inner = cell_of_[i], outer = inner;
+    const std::uint32_t bin = inner % kBins;
+    if (range < distance_[inner])
+      inner -= bin > 0 ? 1 : 0;
     else
-      b += bin + 1 < kBins ? 1 : 0;
-    const float between = distance_[b] - distance_[a];
-    const float share = between > 0.0F ? std::clamp((range_of_[i] - distance_[a]) / between, 0.0F, 1.0F) : 0.0F;
-    const float ground = ground_[a] + share * (ground_[b] - ground_[a]);
-    height[i] = plane_.heightOf(p.x, p.y, p.z) - ground;
+      outer += bin + 1 < kBins ? 1 : 0;
+    const float between = distance_[outer] - distance_[inner];
+    const float share = between > 0.0F ? std::clamp((range - distance_[inner]) / between, 0.0F, 1.0F) : 0.0F;
+    const float ground = ground_[inner] + share * (ground_[outer] - ground_[inner]);
+    returns[i].height = plane_.heightOf(p.x, p.y, p.z) - ground;
   }
 }
 }  // namespace lidar_panoptic_clustering

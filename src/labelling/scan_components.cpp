@@ -2,96 +2,156 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
-constexpr std::uint32_t kColumnReach = 3, kRowReach = 2;
+constexpr std::uint32_t kColumnReach = 8, kRowReach = 4;
 
 bool hangTogether(const LabelledPoint& a, const LabelledPoint& b, float squared_link)
 {
   const auto pa = a.getVector3fMap(), pb = b.getVector3fMap();
   const float squared = (pa - pb).squaredNorm();
   if (squared < squared_link) return true;
-  // |a x b| / |a| is their distance across the beam
-  constexpr float kSlant = 4.0F;
+  constexpr float kSlant = 4.0F;  // the squared cosine of 60 degrees, inverted; |a x b| / |a| is across the beam
   return squared * pa.squaredNorm() < kSlant * pa.cross(pb).squaredNorm();
+}
+
+/// Whether elevation falls with the row; told by a few thousand returns.
+bool isHighestFirst(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
+{
+  constexpr std::size_t kReturns = 4096;
+  const std::size_t stride = returns.size() / kReturns | 1U;
+  const auto middle = 0.5 * (cloud.height - 1.0);
+  double fall = 0.0;
+  for (std::size_t i = 0; i < returns.size(); i += stride)
+    if (returns[i].isReturn())
+      fall += (middle - static_cast<double>(i / cloud.width)) * double{cloud.points[i].z / returns[i].range};
+  return fall >= 0.0;
 }
 }  // namespace
 
-void ScanComponents::find(const LabelledCloud& cloud, const std::vector<float>& height, float above,
+void ScanComponents::find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
                           float link_distance, bool full_turn)
 {
-  const std::uint32_t rows = cloud.height, columns = cloud.width;
+  link(cloud, returns, above, link_distance, full_turn);
+  gather(cloud, returns);
+  const bool highest_first = isHighestFirst(cloud, returns);
+  examineTops(cloud, returns, highest_first);
+  examineFeet(cloud, returns, highest_first);
+  examineSurfaces(cloud, returns);
+}
+
+void ScanComponents::link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
+                          float link_distance, bool full_turn)
+{
+  const std::uint32_t columns = cloud.width;
   const float squared_link = link_distance * link_distance;
-  sets_.reset(cloud.points.size());
-  component_of_.assign(cloud.points.size(), kNone);
-  above_.assign(columns, kNone);
-  const auto link = [&](std::uint32_t a, std::uint32_t b)
+  sets_.reset(returns.size());
+  component_of_.assign(returns.size(), kNone);
+  row_before_.assign(columns, kNone);
+  const auto tryPair = [&](std::uint32_t a, std::uint32_t b)
   {
     if (hangTogether(cloud.points[a], cloud.points[b], squared_link)) sets_.unite(a, b);
   };
-  for (std::uint32_t row = 0; row < rows; ++row)
+  for (std::uint32_t row = 0; row < cloud.height; ++row)
   {
     const std::uint32_t begin = row * columns;
     std::uint32_t first = kNone, last = kNone;
-    for (std::uint32_t column = 0; column < columns; ++column)
+    for (std::uint32_t pixel = begin; pixel < begin + columns; ++pixel)
     {
-      const std::uint32_t pixel = begin + column;
-      if (!(height[pixel] >= above)) continue;
+      if (!(returns[pixel].height >= above)) continue;  // false for no return
       component_of_[pixel] = 0;
       if (first == kNone) first = pixel;
-      if (last != kNone && pixel - last <= kColumnReach) link(pixel, last);
+      if (last != kNone && pixel - last <= kColumnReach) tryPair(pixel, last);
       last = pixel;
-      const std::uint32_t up = above_[column];
-      if (up != kNone && row - up <= kRowReach) link(pixel, up * columns + column);
-      above_[column] = row;
+      std::uint32_t& before = row_before_[pixel - begin];
+      if (before != kNone && row - before <= kRowReach) tryPair(pixel, before * columns + pixel - begin);
+      before = row;
     }
-    if (full_turn && first != last && first + columns - last <= kColumnReach) link(first, last);
+    if (full_turn && first != last && first + columns - last <= kColumnReach) tryPair(first, last);
   }
-  gather(cloud, height);
 }
 
-void ScanComponents::gather(const LabelledCloud& cloud, const std::vector<float>& height)
+/// Numbers the components and measures their size.
+void ScanComponents::gather(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
   components_.clear();
   for (std::uint32_t pixel = 0; pixel < component_of_.size(); ++pixel)
   {
     if (component_of_[pixel] == kNone) continue;
-    const std::uint32_t root = sets_.find(pixel);  // the smallest member, so it has been here
-    if (root == pixel)
+    const std::uint32_t root = sets_.find(pixel);
+    if (root == pixel)  // the smallest member: the component's first
     {
       component_of_[pixel] = static_cast<std::uint32_t>(components_.size());
       components_.emplace_back();
-      components_.back().bottom = components_.back().top = height[pixel];
+      components_.back().bottom = components_.back().top = returns[pixel].height;
     }
     component_of_[pixel] = component_of_[root];
     ScanComponent& c = components_[component_of_[pixel]];
-    const LabelledPoint& p = cloud.points[pixel];
     ++c.point_count;
-    if (pixel < cloud.width || std::isnan(height[pixel - cloud.width]))
-      c.open_top = c.open_top || pixel < 3 * cloud.width;
-    const std::uint32_t col = pixel % cloud.width;
-    for (std::uint32_t down = pixel + cloud.width; down < height.size() && down <= pixel + 3 * cloud.width;
-         down += cloud.width)
-    {
-      if (std::isnan(height[down])) continue;
-      if (component_of_[down] != kNone) break;
-      ++c.edges;
-      if (std::hypot(cloud.points[down].x, cloud.points[down].y) > std::hypot(p.x, p.y) + 0.15F) ++c.undercut;
-      if (height[pixel] < 0.25F) ++c.feet;
-      break;
-    }
-    if (col > 1 && component_of_[pixel - 1] == component_of_[pixel] && component_of_[pixel - 2] == component_of_[pixel])
-    {
-      const auto r = [&](std::uint32_t i) { return cloud.points[i].getVector3fMap().norm(); };
-      ++c.triples;
-      if (std::abs(r(pixel) - 2.0F * r(pixel - 1) + r(pixel - 2)) > 0.08F) ++c.rough;
-    }
-    c.bottom = std::min(c.bottom, height[pixel]), c.top = std::max(c.top, height[pixel]);
-    c.x += p.x, c.y += p.y;
-    c.footprint.add(p.x, p.y);
+    c.bottom = std::min(c.bottom, returns[pixel].height), c.top = std::max(c.top, returns[pixel].height);
+    c.footprint.add(cloud.points[pixel].x, cloud.points[pixel].y);
   }
+}
+
+void ScanComponents::examineTops(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                                 bool highest_first)
+{
+  constexpr std::uint32_t kTopRows = 3;
+  const std::uint32_t rows = std::min(kTopRows, cloud.height), columns = cloud.width;
+  for (std::uint32_t column = 0; column < columns; ++column)
+    for (std::uint32_t k = 0; k < rows; ++k)
+    {
+      const std::uint32_t pixel = (highest_first ? k : cloud.height - 1 - k) * columns + column;
+      if (!returns[pixel].isReturn()) continue;
+      if (component_of_[pixel] != kNone) components_[component_of_[pixel]].open_top = true;
+      break;  // what lies below the highest return of a column ends there
+    }
+}
+
+void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                                 bool highest_first)
+{
+  constexpr float kUnder = 0.15F;  // [m] more than a wall's foot and range noise
+  const std::uint32_t columns = cloud.width;
+  row_before_.assign(columns, kNone);  // the row of the last return
+  for (std::uint32_t k = 0; k < cloud.height; ++k)
+  {
+    const std::uint32_t row = highest_first ? k : cloud.height - 1 - k;
+    for (std::uint32_t column = 0; column < columns; ++column)
+    {
+      const std::uint32_t pixel = row * columns + column;
+      if (!returns[pixel].isReturn()) continue;
+      const std::uint32_t before = std::exchange(row_before_[column], row);
+      if (component_of_[pixel] != kNone || before == kNone) continue;
+      const std::uint32_t over = before * columns + column;
+      if (component_of_[over] == kNone || (row > before ? row - before : before - row) > kRowReach) continue;
+      ScanComponent& c = components_[component_of_[over]];
+      ++c.feet;
+      if (returns[pixel].range > returns[over].range + kUnder) ++c.undercut_feet;
+    }
+  }
+}
+
+void ScanComponents::examineSurfaces(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
+{
+  constexpr float kNoise = 0.04F;  // [m] twice the range noise of usual sensors
+  constexpr float kBend = 0.75F;   // of the distance between neighbouring beams
+  for (std::uint32_t row = 0; row < cloud.height; ++row)
+    for (std::uint32_t pixel = row * cloud.width + 2; pixel < (row + 1) * cloud.width; ++pixel)
+    {
+      const std::uint32_t component = component_of_[pixel];
+      if (component == kNone || component_of_[pixel - 1] != component || component_of_[pixel - 2] != component)
+        continue;
+      const LabelledPoint &a = cloud.points[pixel - 1], &b = cloud.points[pixel];
+      const float spacing = std::abs(a.x * b.y - a.y * b.x) / returns[pixel].range;
+      const float bend = returns[pixel].range - 2.0F * returns[pixel - 1].range + returns[pixel - 2].range;
+      ScanComponent& c = components_[component];
+      ++c.triples;
+      if (std::abs(bend) > kNoise + kBend * spacing) ++c.rough_triples;
+    }
 }
 }  // namespace lidar_panoptic_clustering

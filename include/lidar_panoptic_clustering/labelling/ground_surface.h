@@ -15,6 +15,15 @@ struct SlopedPlane
   float heightOf(float x, float y, float z) const { return z - slope_x * x - slope_y * y - offset; }
 };
 
+/// Where a return lies; in the place of a missing one, NaN.
+struct GroundedReturn
+{
+  float range;   ///< horizontal [m]
+  float height;  ///< above the ground [m]
+
+  bool isReturn() const { return range > 0.0F; }
+};
+
 /// The ground around the sensor, from a scan without labels: a height in each cell of a polar grid.
 ///
 /// 1. The lowest return of each cell stands for it. 2. A plane is found among those within 20 m: a vote over slopes and
@@ -30,10 +39,10 @@ class GroundSurface
 public:
   GroundSurface();
 
-  /// Writes for each point of `cloud` how high it lies above the ground [m], NaN where there is no return.
-  /// Returns beyond `max_range_m` count as none. `max_slope`: rise over run, against the plane.
+  /// Writes where each point of `cloud` lies. No return is NaN, infinity, exactly (0, 0, 0), anything straight above or
+  /// below the sensor, and what is farther than `max_range_m`. `max_slope`: rise over run, against the plane.
   /// Returns whether there is ground; without it, heights are those above the lowest return.
-  bool measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<float>& height);
+  bool measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<GroundedReturn>& returns);
 
   /// The plane under the sensor in the last scan.
   const SlopedPlane& plane() const { return plane_; }
@@ -44,17 +53,17 @@ private:
     float x, y, z;
   };
 
-  void sortIntoCells(const LabelledCloud& cloud, float max_range_m);
+  void sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns);
   bool findPlane();
   void votePlane();
   std::size_t fitPlane(float gate);
   void follow(float max_slope);
   void bridge();
-  void writeHeights(const LabelledCloud& cloud, std::vector<float>& height) const;
+  void flatten();
+  void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const;
 
   SlopedPlane plane_;
   std::vector<std::uint16_t> cell_of_;  ///< by point
-  std::vector<float> range_of_;         ///< by point: horizontal [m]
   std::vector<Low> lowest_;             ///< by cell, the bins of a sector in a row
   std::vector<Low> near_;               ///< the lowest of the cells around the sensor
   std::vector<float> ground_;           ///< by cell: above the plane [m]
