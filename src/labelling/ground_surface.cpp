@@ -66,16 +66,16 @@ std::uint32_t sectorOf(float x, float y)
 }
 }  // namespace
 
-GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), distance_(kCells), unseen_(kCells) {}
+GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), distance_(kCells), rise_(kCells), unseen_(kCells) {}
 
 bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope,
                             std::vector<GroundedReturn>& returns)
 {
   sortIntoCells(cloud, max_range_m, returns);
-  const bool found = findPlane();
+  const bool found = findPlane(cloud);
   if (found)
   {
-    follow(max_slope);
+    follow(cloud, max_slope);
     bridge();
   }
   else
@@ -87,7 +87,7 @@ bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float
 void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns)
 {
   const float max_squared_range = max_range_m * max_range_m;
-  lowest_.assign(kCells, {0.0F, 0.0F, kFar});
+  lowest_.assign(kCells, {kFar, 0});
   cell_of_.resize(cloud.points.size());
   returns.resize(cloud.points.size());
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
@@ -103,11 +103,14 @@ void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m,
     returns[i].range = std::sqrt(squared);
     const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(returns[i].range);
     cell_of_[i] = static_cast<std::uint16_t>(cell);
-    if (p.z < lowest_[cell].z) lowest_[cell] = {p.x, p.y, p.z};
+    Lowest& low = lowest_[cell];  // without a branch: no predictor knows which return is lower
+    const bool lower = p.z < low.z;
+    low.z = lower ? p.z : low.z;
+    low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
   }
 }
 
-bool GroundSurface::findPlane()
+bool GroundSurface::findPlane(const LabelledCloud& cloud)
 {
   constexpr float kReach = 20.0F;      // [m]
   constexpr std::size_t kFewest = 10;  // cells
@@ -119,7 +122,9 @@ bool GroundSurface::findPlane()
   {
     if (lowest_[cell].z == kFar) continue;
     bottom = std::min(bottom, lowest_[cell].z);
-    if (kGrid.middle[cell % kBins] < kReach) near_.push_back(lowest_[cell]);
+    if (kGrid.middle[cell % kBins] >= kReach) continue;
+    const LabelledPoint& p = cloud.points[lowest_[cell].point];
+    near_.push_back({p.x, p.y, p.z});
   }
   std::size_t on_plane = 0;
   if (near_.size() >= kFewest)
@@ -138,7 +143,7 @@ void GroundSurface::votePlane()
   constexpr int kSlopes = 6;  // either side, two degrees each
   constexpr float kSlopeStep = 0.035F, kOffsetStep = 0.25F;
   constexpr std::size_t kOffsets = 48;  // down to 12 m below the sensor
-  constexpr std::size_t kVoters = 600;
+  constexpr std::size_t kVoters = 300;
   const std::size_t stride = 1 + near_.size() / kVoters;
   int most = -1;
   for (int v = -kSlopes; v <= kSlopes; ++v)
@@ -181,14 +186,14 @@ std::size_t GroundSurface::fitPlane(float gate)
   return count;
 }
 
-void GroundSurface::follow(float max_slope)
+void GroundSurface::follow(const LabelledCloud& cloud, float max_slope)
 {
   constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
   constexpr float kMostStep = 0.5F;  // [m] below a bumper
   for (std::uint32_t sector = 0; sector < kSectors; ++sector)
   {
     const std::uint32_t cell = sector * kBins;
-    ground_[cell] = 0.0F, distance_[cell] = kGrid.middle[0], unseen_[cell] = kGrid.middle[0];
+    ground_[cell] = distance_[cell] = unseen_[cell] = 0.0F;
   }
   for (std::uint32_t bin = 1; bin < kBins; ++bin)
   {
@@ -207,10 +212,10 @@ void GroundSurface::follow(float max_slope)
       expected /= weights;
 
       const std::uint32_t cell = sector * kBins + bin;
-      const Low& low = lowest_[cell];
+      const LabelledPoint& low = cloud.points[lowest_[cell].point];
       const float found = plane_.heightOf(low.x, low.y, low.z);
       const float gate = std::min(kMostStep, kNoise + max_slope * (unseen + step));
-      const bool seen = std::abs(found - expected) < gate;  // false for a cell without returns
+      const bool seen = lowest_[cell].z != kFar && std::abs(found - expected) < gate;
       ground_[cell] = seen ? found : expected;
       distance_[cell] = seen ? std::hypot(low.x, low.y) : kGrid.middle[bin];
       unseen_[cell] = seen ? 0.0F : unseen + step;
@@ -239,26 +244,24 @@ void GroundSurface::bridge()
 void GroundSurface::flatten()
 {
   std::fill(ground_.begin(), ground_.end(), 0.0F);
-  for (std::uint32_t cell = 0; cell < kCells; ++cell) distance_[cell] = kGrid.middle[cell % kBins];
+  for (std::uint32_t cell = 0; cell < kCells; ++cell)
+    distance_[cell] = cell % kBins == 0 ? 0.0F : kGrid.middle[cell % kBins];
 }
 
-void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const
+/// On the line between the grounds of two cells; beyond the last one as there.
+void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns)
 {
+  for (std::uint32_t cell = 0; cell < kCells; ++cell)
+    rise_[cell] =
+        (cell + 1) % kBins == 0 ? 0.0F : (ground_[cell + 1] - ground_[cell]) / (distance_[cell + 1] - distance_[cell]);
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
   {
     if (cell_of_[i] == kNoCell) continue;
     const LabelledPoint& p = cloud.points[i];
     const float range = returns[i].range;
-    // on the line between the grounds of two cells, held beyond the first and the last
-    std::uint32_t inner = cell_of_[i], outer = inner;
-    const std::uint32_t bin = inner % kBins;
-    if (range < distance_[inner])
-      inner -= bin > 0 ? 1 : 0;
-    else
-      outer += bin + 1 < kBins ? 1 : 0;
-    const float between = distance_[outer] - distance_[inner];
-    const float share = between > 0.0F ? std::clamp((range - distance_[inner]) / between, 0.0F, 1.0F) : 0.0F;
-    const float ground = ground_[inner] + share * (ground_[outer] - ground_[inner]);
+    std::uint32_t inner = cell_of_[i];
+    inner -= range < distance_[inner] ? 1 : 0;  // never in a sector's first cell, whose ground is at 0 m
+    const float ground = ground_[inner] + rise_[inner] * (range - distance_[inner]);
     returns[i].height = plane_.heightOf(p.x, p.y, p.z) - ground;
   }
 }

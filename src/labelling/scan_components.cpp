@@ -51,6 +51,7 @@ void ScanComponents::link(const LabelledCloud& cloud, const std::vector<Grounded
   const float squared_link = link_distance * link_distance;
   sets_.reset(returns.size());
   component_of_.assign(returns.size(), kNone);
+  pixels_.clear();
   row_before_.assign(columns, kNone);
   const auto tryPair = [&](std::uint32_t a, std::uint32_t b)
   {
@@ -63,7 +64,7 @@ void ScanComponents::link(const LabelledCloud& cloud, const std::vector<Grounded
     for (std::uint32_t pixel = begin; pixel < begin + columns; ++pixel)
     {
       if (!(returns[pixel].height >= above)) continue;  // false for no return
-      component_of_[pixel] = 0;
+      pixels_.push_back(pixel);
       if (first == kNone) first = pixel;
       if (last != kNone && pixel - last <= kColumnReach) tryPair(pixel, last);
       last = pixel;
@@ -79,9 +80,8 @@ void ScanComponents::link(const LabelledCloud& cloud, const std::vector<Grounded
 void ScanComponents::gather(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
   components_.clear();
-  for (std::uint32_t pixel = 0; pixel < component_of_.size(); ++pixel)
+  for (const std::uint32_t pixel : pixels_)
   {
-    if (component_of_[pixel] == kNone) continue;
     const std::uint32_t root = sets_.find(pixel);
     if (root == pixel)  // the smallest member: the component's first
     {
@@ -140,18 +140,18 @@ void ScanComponents::examineSurfaces(const LabelledCloud& cloud, const std::vect
 {
   constexpr float kNoise = 0.04F;  // [m] twice the range noise of usual sensors
   constexpr float kBend = 0.75F;   // of the distance between neighbouring beams
-  for (std::uint32_t row = 0; row < cloud.height; ++row)
-    for (std::uint32_t pixel = row * cloud.width + 2; pixel < (row + 1) * cloud.width; ++pixel)
-    {
-      const std::uint32_t component = component_of_[pixel];
-      if (component == kNone || component_of_[pixel - 1] != component || component_of_[pixel - 2] != component)
-        continue;
-      const LabelledPoint &a = cloud.points[pixel - 1], &b = cloud.points[pixel];
-      const float spacing = std::abs(a.x * b.y - a.y * b.x) / returns[pixel].range;
-      const float bend = returns[pixel].range - 2.0F * returns[pixel - 1].range + returns[pixel - 2].range;
-      ScanComponent& c = components_[component];
-      ++c.triples;
-      if (std::abs(bend) > kNoise + kBend * spacing) ++c.rough_triples;
-    }
+  for (const std::uint32_t pixel : pixels_)
+  {
+    const std::uint32_t component = component_of_[pixel];
+    if (pixel % cloud.width < 2 || component_of_[pixel - 1] != component || component_of_[pixel - 2] != component)
+      continue;
+    const LabelledPoint &a = cloud.points[pixel - 1], &b = cloud.points[pixel];
+    const float range = returns[pixel].range;
+    const float spacing = std::abs(a.x * b.y - a.y * b.x);  // times range
+    const float bend = range - 2.0F * returns[pixel - 1].range + returns[pixel - 2].range;
+    ScanComponent& c = components_[component];
+    ++c.triples;
+    c.rough_triples += (std::abs(bend) - kNoise) * range > kBend * spacing ? 1U : 0U;
+  }
 }
 }  // namespace lidar_panoptic_clustering

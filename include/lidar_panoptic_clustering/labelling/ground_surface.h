@@ -52,22 +52,28 @@ private:
   {
     float x, y, z;
   };
+  struct Lowest
+  {
+    float z;
+    std::uint32_t point;
+  };
 
   void sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns);
-  bool findPlane();
+  bool findPlane(const LabelledCloud& cloud);
   void votePlane();
   std::size_t fitPlane(float gate);
-  void follow(float max_slope);
+  void follow(const LabelledCloud& cloud, float max_slope);
   void bridge();
   void flatten();
-  void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const;
+  void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns);
 
   SlopedPlane plane_;
   std::vector<std::uint16_t> cell_of_;  ///< by point
-  std::vector<Low> lowest_;             ///< by cell, the bins of a sector in a row
+  std::vector<Lowest> lowest_;          ///< by cell, the bins of a sector in a row
   std::vector<Low> near_;               ///< the lowest of the cells around the sensor
   std::vector<float> ground_;           ///< by cell: above the plane [m]
   std::vector<float> distance_;         ///< by cell: horizontal, where its ground was seen [m]
+  std::vector<float> rise_;             ///< by cell: of the ground from here to the next one out, rise over run
   std::vector<float> unseen_;           ///< by cell: how far back the ground was seen last [m]; 0: here
 };
 }  // namespace lidar_panoptic_clustering

@@ -59,6 +59,7 @@ private:
 
   DisjointSets sets_;
   std::vector<std::uint32_t> component_of_;
+  std::vector<std::uint32_t> pixels_;      ///< of the returns above the ground, in row-major order
   std::vector<std::uint32_t> row_before_;  ///< by column: the last row of a return above the ground
   std::vector<ScanComponent> components_;
 };
