@@ -90,6 +90,8 @@ void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m,
   lowest_.assign(kCells, {kFar, 0});
   cell_of_.resize(cloud.points.size());
   returns.resize(cloud.points.size());
+  std::uint32_t open = 0;  // neighbours share a cell: it is kept at hand until the next one
+  Lowest low = lowest_[open];
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
   {
     const LabelledPoint& p = cloud.points[i];
@@ -100,14 +102,20 @@ void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m,
       returns[i] = {kNaN, kNaN};
       continue;
     }
-    returns[i].range = std::sqrt(squared);
-    const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(returns[i].range);
+    const float range = returns[i].range = std::sqrt(squared);
+    const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(range);
     cell_of_[i] = static_cast<std::uint16_t>(cell);
-    Lowest& low = lowest_[cell];  // without a branch: no predictor knows which return is lower
-    const bool lower = p.z < low.z;
+    if (cell != open)
+    {
+      lowest_[open] = low;
+      open = cell;
+      low = lowest_[open];
+    }
+    const bool lower = p.z < low.z;  // without a branch: no predictor knows which return is lower
     low.z = lower ? p.z : low.z;
     low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
   }
+  lowest_[open] = low;
 }
 
 bool GroundSurface::findPlane(const LabelledCloud& cloud)

@@ -44,6 +44,8 @@ void ScanComponents::find(const LabelledCloud& cloud, const std::vector<Grounded
   examineSurfaces(cloud, returns);
 }
 
+/// Runs of neighbours along a line are one from the start; each pair of runs, one below the other, is tried until it
+/// hangs together. `component_of_` holds a run's first pixel until gather().
 void ScanComponents::link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
                           float link_distance, bool full_turn)
 {
@@ -53,26 +55,30 @@ void ScanComponents::link(const LabelledCloud& cloud, const std::vector<Grounded
   component_of_.assign(returns.size(), kNone);
   pixels_.clear();
   row_before_.assign(columns, kNone);
-  const auto tryPair = [&](std::uint32_t a, std::uint32_t b)
-  {
-    if (hangTogether(cloud.points[a], cloud.points[b], squared_link)) sets_.unite(a, b);
-  };
+  const auto isPair = [&](std::uint32_t a, std::uint32_t b)
+  { return hangTogether(cloud.points[a], cloud.points[b], squared_link); };
   for (std::uint32_t row = 0; row < cloud.height; ++row)
   {
     const std::uint32_t begin = row * columns;
-    std::uint32_t first = kNone, last = kNone;
+    std::uint32_t first = kNone, last = kNone, run = kNone, run_above = kNone;
     for (std::uint32_t pixel = begin; pixel < begin + columns; ++pixel)
     {
       if (!(returns[pixel].height >= above)) continue;  // false for no return
       pixels_.push_back(pixel);
       if (first == kNone) first = pixel;
-      if (last != kNone && pixel - last <= kColumnReach) tryPair(pixel, last);
+      if (last == kNone || pixel - last > kColumnReach || !isPair(pixel, last)) run = pixel, run_above = kNone;
       last = pixel;
-      std::uint32_t& before = row_before_[pixel - begin];
-      if (before != kNone && row - before <= kRowReach) tryPair(pixel, before * columns + pixel - begin);
-      before = row;
+      component_of_[pixel] = run;
+
+      const std::uint32_t before = std::exchange(row_before_[pixel - begin], row);
+      if (before == kNone || row - before > kRowReach) continue;
+      const std::uint32_t over = before * columns + pixel - begin;
+      if (component_of_[over] == run_above || !isPair(pixel, over)) continue;
+      run_above = component_of_[over];
+      sets_.unite(run, run_above);
     }
-    if (full_turn && first != last && first + columns - last <= kColumnReach) tryPair(first, last);
+    if (full_turn && first != last && first + columns - last <= kColumnReach && isPair(first, last))
+      sets_.unite(first, run);
   }
 }
 
@@ -82,7 +88,7 @@ void ScanComponents::gather(const LabelledCloud& cloud, const std::vector<Ground
   components_.clear();
   for (const std::uint32_t pixel : pixels_)
   {
-    const std::uint32_t root = sets_.find(pixel);
+    const std::uint32_t root = sets_.find(component_of_[pixel]);
     if (root == pixel)  // the smallest member: the component's first
     {
       component_of_[pixel] = static_cast<std::uint32_t>(components_.size());
