@@ -43,8 +43,8 @@ struct Appearance
 bool isPole(const ScanComponent& c, const Appearance& a)
 {
   if (a.maybe_tall && a.size.length < 1.0F && (a.tall || c.bottom > 0.5F)) return true;
-  // thinner than a person
-  return c.top > 1.5F && (a.size.length < 0.3F || (a.size.length < 0.6F && a.size.width < 0.1F));
+  // thinner than a person, from the side too
+  return c.top > 1.5F && (a.size.length < 0.25F || (a.size.length < 0.6F && a.size.width < 0.1F));
 }
 
 /// Riders and their two-wheelers are as rough, but small, and stand on wheels.
@@ -63,8 +63,8 @@ bool isWall(const ScanComponent& c, const Appearance& a)
   if (!has_cars_footprint && a.size.length > 1.5F && a.has_feet && a.undercut < 0.35F) return true;
   // seen over something that hides its foot
   if (a.maybe_tall && !a.has_feet && c.bottom > 0.25F && a.size.width < 1.3F) return true;
-  // fences and hedges: no vehicle is that long and shows no width
-  return a.size.length > 4.0F && a.size.width < 0.3F;
+  // fences and hedges: no vehicle is so long, as low as a car, and shows no width
+  return !a.maybe_tall && a.size.length > 6.0F && a.size.width < 0.3F;
 }
 }  // namespace
 
