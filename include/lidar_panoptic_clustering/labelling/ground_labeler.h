@@ -1,0 +1,76 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/point_types.h"
+#include "lidar_panoptic_clustering/labelling/ground_surface.h"
+#include "lidar_panoptic_clustering/labelling/scan_components.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+struct GroundLabelerConfig
+{
+  double max_range_m = 300.0;     ///< returns beyond count as no return
+  bool full_turn = true;          ///< the scan closes on itself; false for a sector
+  double ground_height_m = 0.15;  ///< what is lower is ground: a curb's height
+  double max_slope = 0.05;        ///< of the ground against the plane around the sensor, rise over run
+  double link_m = 0.7;            ///< the widest gap between neighbouring returns of one thing: a car's side window
+  double max_height_m = 4.2;      ///< no object is higher: 4.0 m is the limit for vehicles in most of Europe
+  double max_length_m = 20.0;     ///< no object is longer: 18.75 m is the European limit for lorries with trailers
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    visitor("max_range_m", self.max_range_m, 1.0, 10000.0);
+    visitor("full_turn", self.full_turn);
+    visitor("ground_height_m", self.ground_height_m, 0.02, 1.0);
+    visitor("max_slope", self.max_slope, 0.0, 1.0);
+    visitor("link_m", self.link_m, 0.05, 5.0);
+    visitor("max_height_m", self.max_height_m, 0.5, 100.0);
+    visitor("max_length_m", self.max_length_m, 0.5, 1000.0);
+  }
+};
+
+/// Labels a scan without any network: ground, structure (walls, fences, poles, trees), and the rest as objects, in the
+/// raw ids of the class table "object".
+///
+/// The ground is followed from under the sensor (see GroundSurface); what hangs together above it (see ScanComponents)
+/// is structure when it is too high, too long or too wide for a vehicle, hovers over it, is as thin as a pole, as rough
+/// as foliage, or stands on the ground like a wall. The limits are sizes of vehicles and people, none is learnt; the
+/// sensor's height over the ground and a tilt of up to 12 degrees each way are found in each scan.
+///
+/// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side from a wall, and a
+/// person close to something from that thing.
+///
+/// Not shared between threads; keeps its memory.
+class GroundLabeler
+{
+public:
+  /// Throws std::invalid_argument on a value outside its range.
+  explicit GroundLabeler(const GroundLabelerConfig& config);
+
+  /// Writes the labels of an organised cloud, whose rows are scan lines from the highest down or from the lowest up; z
+  /// points up. Missing returns (NaN, infinity, exactly (0, 0, 0), out of range) become "ignored", as does whatever is
+  /// straight above or below the sensor. Throws std::invalid_argument when width * height is not the number of points.
+  /// Linear in the pixels.
+  void label(LabelledCloud& cloud);
+
+  /// Whether the last scan had ground: it has not where there are hardly any returns, or the sensor stands on its head
+  /// and its driver did not turn the cloud round. Then nothing is labelled ground.
+  bool foundGround() const { return found_ground_; }
+  /// The plane under the sensor in the last scan.
+  const SlopedPlane& groundPlane() const { return surface_.plane(); }
+
+private:
+  bool isStructure(const ScanComponent& component) const;
+
+  GroundLabelerConfig config_;
+  std::uint32_t ignored_, ground_, structure_, object_;  ///< raw ids
+  GroundSurface surface_;
+  ScanComponents components_;
+  bool found_ground_ = false;
+  std::vector<GroundedReturn> returns_;
+  std::vector<std::uint32_t> label_of_component_;
+};
+}  // namespace lidar_panoptic_clustering
