@@ -53,6 +53,16 @@ TEST(ClassTable, ClassesOfAGroupShareItAndOthersHaveTheirOwn)
   EXPECT_LT(group("dog"), table.groupCount());
 }
 
+TEST(ClassTable, AliasesLeadToTheirClass)
+{
+  const ClassTable table = ClassTable::parse(
+      "classes: [{name: road, kind: stuff, ids: [40], color: [1, 2, 3], aliases: [street, way]}]", "test.yaml");
+  EXPECT_EQ(table[1].aliases, std::vector<std::string>({"street", "way"}));
+  EXPECT_EQ(table.findByAlias("way"), table.findByName("road"));
+  EXPECT_EQ(table.findByAlias("road"), kUnknownClass);
+  EXPECT_EQ(table.findByName("way"), kUnknownClass);
+}
+
 TEST(ClassTable, IdsOutsideAreUnknownAndNoThing)
 {
   const ClassTable table = ClassTable::parse(kSmallTable, "test.yaml");
@@ -121,6 +131,12 @@ TEST(ClassTable, NamesFileAndClassInEachError)
   EXPECT_EQ(errorOfClasses(car + ", {name: bus, kind: stuff, ids: [5, 10], color: [1, 2, 3]}"),
             "my.yaml: class 'bus': id 10 already belongs to class 'car'");
   EXPECT_EQ(errorOfClasses(car + ", {kind: stuff, ids: [5], color: [1, 2, 3]}"), "my.yaml: class 2 has no 'name'");
+  const std::string road = "{name: road, kind: stuff, ids: [40], color: [1, 2, 3], aliases: ";
+  EXPECT_EQ(errorOfClasses(road + "street}"), "my.yaml: class 'road': 'aliases' must be a list of class names");
+  EXPECT_EQ(errorOfClasses(road + "[street, car]}, " + car),
+            "my.yaml: class 'road': alias 'car' already belongs to class 'car'");
+  EXPECT_EQ(errorOfClasses(road + "[way]}, {name: path, kind: stuff, ids: [5], color: [1, 2, 3], aliases: [way]}"),
+            "my.yaml: class 'path': alias 'way' already belongs to class 'road'");
   EXPECT_EQ(errorOfClasses("car"), "my.yaml: class 1 has no 'name'");
 }
 
@@ -162,13 +178,13 @@ TEST(ClassTable, LoadsAFileAndSaysWhatThereIsWhereItCannot)
     {
       EXPECT_EQ(std::string(error.what()), "class table '" + name +
                                                "': cannot be read; expected a YAML file or one of nuscenes, "
-                                               "semantic_kitti");
+                                               "object, semantic_kitti");
     }
 }
 
 TEST(ClassTable, ShippedTablesAreTheFilesOfConfig)
 {
-  EXPECT_EQ(ClassTable::shippedNames(), std::vector<std::string>({"nuscenes", "semantic_kitti"}));
+  EXPECT_EQ(ClassTable::shippedNames(), std::vector<std::string>({"nuscenes", "object", "semantic_kitti"}));
   for (const auto& name : ClassTable::shippedNames())
   {
     const ClassTable shipped = ClassTable::load(name), file = ClassTable::load("config/" + name + ".yaml");
@@ -180,6 +196,7 @@ TEST(ClassTable, ShippedTablesAreTheFilesOfConfig)
       EXPECT_EQ(a.name, b.name);
       EXPECT_EQ(a.ids, b.ids);
       EXPECT_EQ(a.rgb, b.rgb);
+      EXPECT_EQ(a.aliases, b.aliases);
     }
   }
   EXPECT_EQ(ClassTable::load("nuscenes")[ClassTable::load("nuscenes").find(17)].name, "car");

@@ -34,6 +34,7 @@ public:
     const auto color = required<std::vector<int>>("color", "[red, green, blue]");
     if (color.size() != 3 || std::any_of(color.begin(), color.end(), [](int c) { return c < 0 || c > 255; }))
       fail("color must be [red, green, blue], each from 0 to 255");
+    if (node_["aliases"]) info.aliases = required<std::vector<std::string>>("aliases", "a list of class names");
     info.rgb = static_cast<std::uint32_t>(color[0] << 16 | color[1] << 8 | color[2]);
     if (!info.isThing()) return info;
 
@@ -99,7 +100,7 @@ try
 
   ClassTable table;
   table.name_ = root["name"] ? root["name"].as<std::string>() : source;
-  table.classes_.push_back({"unknown", ClassKind::kIgnored, {}, 0x808080, 0, 0.0F, 0.0F, 0.0F});
+  table.classes_.push_back({"unknown", ClassKind::kIgnored, {}, 0x808080, 0, 0.0F, 0.0F, 0.0F, {}});
   table.groups_.push_back("");
 
   for (const YAML::Node& node : root["classes"])
@@ -128,6 +129,7 @@ try
     table.classes_.push_back(std::move(info));
   }
   if (table.size() == 1) throw std::invalid_argument(source + ": the list 'classes' is empty");
+  table.checkAliases(source);
   return table;
 }
 catch (const YAML::Exception& error)
@@ -165,5 +167,28 @@ ClassIndex ClassTable::findByName(const std::string& name) const
   for (std::size_t i = 1; i < classes_.size(); ++i)
     if (classes_[i].name == name) return static_cast<ClassIndex>(i);
   return kUnknownClass;
+}
+
+ClassIndex ClassTable::findByAlias(const std::string& name) const
+{
+  for (std::size_t i = 1; i < classes_.size(); ++i)
+  {
+    const auto& aliases = classes_[i].aliases;
+    if (std::find(aliases.begin(), aliases.end(), name) != aliases.end()) return static_cast<ClassIndex>(i);
+  }
+  return kUnknownClass;
+}
+
+/// A name stands for one class at most.
+void ClassTable::checkAliases(const std::string& source) const
+{
+  for (std::size_t i = 1; i < classes_.size(); ++i)
+    for (const std::string& alias : classes_[i].aliases)
+    {
+      const ClassIndex named = findByName(alias), owner = named != kUnknownClass ? named : findByAlias(alias);
+      if (owner == i) continue;
+      throw std::invalid_argument(source + ": class '" + classes_[i].name + "': alias '" + alias +
+                                  "' already belongs to class '" + classes_[owner].name + "'");
+    }
 }
 }  // namespace lidar_panoptic_clustering

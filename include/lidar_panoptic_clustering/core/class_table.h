@@ -26,7 +26,8 @@ struct ClassInfo
   std::uint8_t group = 0;          ///< classes a network confuses share a group, see ClassTable::groupName
   float length_m = 0.0F;           ///< usual size in bird's-eye view, length >= width; things only
   float width_m = 0.0F;
-  float link_distance_m = 0.0F;  ///< the widest gap between neighbouring points of one object; things only
+  float link_distance_m = 0.0F;      ///< the widest gap between neighbouring points of one object; things only
+  std::vector<std::string> aliases;  ///< names of other tables' classes that this one covers, the nearest first
 
   bool isThing() const { return kind == ClassKind::kThing; }
 };
@@ -37,7 +38,7 @@ struct ClassInfo
 class ClassTable
 {
 public:
-  /// `name_or_path`: a table that ships with the package ("semantic_kitti", "nuscenes"), or a YAML file.
+  /// `name_or_path`: a table that ships with the package ("semantic_kitti", "nuscenes", "object"), or a YAML file.
   /// Throws std::runtime_error when there is no such file, std::invalid_argument when its content is wrong;
   /// both name the file, the class, and what was expected.
   static ClassTable load(const std::string& name_or_path);
@@ -54,6 +55,8 @@ public:
   }
   /// The class called `name`; kUnknownClass where there is none.
   ClassIndex findByName(const std::string& name) const;
+  /// The class that has `name` among its aliases; kUnknownClass where there is none.
+  ClassIndex findByAlias(const std::string& name) const;
 
   const ClassInfo& operator[](ClassIndex index) const { return classes_[index]; }
   /// Number of classes, the unknown class at index 0 included: valid indices are 0..size()-1.
@@ -62,6 +65,8 @@ public:
   std::size_t groupCount() const { return groups_.size(); }
 
 private:
+  void checkAliases(const std::string& source) const;
+
   std::string name_;
   std::vector<ClassInfo> classes_;
   std::vector<std::string> groups_;
