@@ -23,9 +23,9 @@ namespace
 constexpr float kInfinity = std::numeric_limits<float>::infinity();
 
 /// A small sensor with room above and below the horizon, without noise.
-LidarModel smallModel()
+SensorModel smallModel()
 {
-  LidarModel model;
+  SensorModel model;
   model.name = "small";
   for (int i = 0; i < 16; ++i) model.elevations_rad.push_back(0.30F - 0.045F * static_cast<float>(i));
   model.columns = 128;
@@ -186,7 +186,7 @@ TEST(RayCaster, FindsTheRangesOfTheWorld)
   for (const Solid& solid : solids)
     if (solid.surface.transmission == 0.0F && solid.surface.depth_m == 0.0F) opaque.push_back(solid);
   const Pose sensor{24.0, 0.4, 1.73, 0.7};
-  const LidarModel model = smallModel();
+  const SensorModel model = smallModel();
   RayCaster caster(model);
   caster.cast(opaque, sensor, 0);
 

@@ -104,6 +104,8 @@ TEST(LabelCloud, isReadInTheOrderOfTheCloud)
   Labels labels;
   readLabelCloud(padded.view(), "label", cloud.view(), labels);
   EXPECT_EQ(labels, (Labels{0, 1, 2, 1, 2, 3}));
+  readLabelCloud(cloud.view(), "", padded.view(), labels);
+  EXPECT_EQ(labels, (Labels{0, 1, 2, 1, 2, 3})) << "by its usual name";
   readLabelCloud(cloud.view(), "x", padded.view(), labels);
   EXPECT_EQ(labels, (Labels{0, 1, 2, 10, 11, 12}));
 }
@@ -126,7 +128,8 @@ TEST(LabelCloud, ofOtherPointsIsRefused)
             "expected a label cloud with the cloud's points in the same order, 2 rows x 3 columns or all in one row, "
             "found 3 rows x 2 columns");
   EXPECT_EQ(errorOf([&] { readLabelCloud(cloud.view(), "class", cloud.view(), labels); }),
-            "expected a field 'class', found x float32, y float32, z float32, label uint32");
+            "expected a field 'class' with class ids (named by the parameter label_field), found x float32, y float32, "
+            "z float32, label uint32");
   RawMessage damaged = cloud;
   damaged.bytes.pop_back();
   EXPECT_NE(errorOf([&] { readLabelCloud(damaged.view(), "label", cloud.view(), labels); }), "");

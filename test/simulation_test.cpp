@@ -65,13 +65,13 @@ TEST(LidarSimulator, SameFrameSameBits)
 
   SimulatorConfig config;
   config.seed = 2;
-  LidarSimulator other(hdl64e(), config);
+  LidarSimulator other(SensorModel::load("hdl64e"), config);
   EXPECT_FALSE(sameBits(scanOf(other, 0), zero));
 }
 
 TEST(LidarSimulator, ScanIsOrganisedAndWithinTheModelsLimits)
 {
-  const LidarModel model = hdl64e();
+  const SensorModel model = SensorModel::load("hdl64e");
   LidarSimulator simulator;
   for (const std::uint64_t frame : {0, 50, 1000})
   {
@@ -208,24 +208,25 @@ TEST(LidarSimulator, RefusesBadParameters)
 {
   SimulatorConfig config;
   config.rate_hz = 0.0;
-  EXPECT_NE(messageOf([&] { LidarSimulator(hdl64e(), config); }).find("rate_hz"), std::string::npos);
+  EXPECT_NE(messageOf([&] { LidarSimulator(SensorModel::load("hdl64e"), config); }).find("rate_hz"), std::string::npos);
   config = {};
   config.traffic_density = 1.5;
-  EXPECT_NE(messageOf([&] { LidarSimulator(hdl64e(), config); }).find("traffic_density"), std::string::npos);
+  EXPECT_NE(messageOf([&] { LidarSimulator(SensorModel::load("hdl64e"), config); }).find("traffic_density"),
+            std::string::npos);
   config = {};
   EXPECT_NE(messageOf([&] { applyParameters(config, {{"seed", -1}}); }).find("seed"), std::string::npos);
 
-  LidarModel model = hdl64e();
+  SensorModel model = SensorModel::load("hdl64e");
   std::swap(model.elevations_rad[3], model.elevations_rad[4]);
   EXPECT_NE(messageOf([&] { LidarSimulator{model}; }).find("ring 4"), std::string::npos);
-  model = hdl64e();
+  model = SensorModel::load("hdl64e");
   model.columns = 0;
   EXPECT_NE(messageOf([&] { LidarSimulator{model}; }).find("columns"), std::string::npos);
-  model = hdl64e();
+  model = SensorModel::load("hdl64e");
   model.max_range_m = std::numeric_limits<float>::quiet_NaN();
   EXPECT_NE(messageOf([&] { LidarSimulator{model}; }).find("max_range_m"), std::string::npos);
   model.elevations_rad.clear();
-  EXPECT_NE(messageOf([&] { LidarSimulator{model}; }).find("rings"), std::string::npos);
+  EXPECT_NE(messageOf([&] { LidarSimulator{model}; }).find("elevations"), std::string::npos);
 
   LidarSimulator simulator;
   PanopticCloud cloud;
@@ -237,7 +238,7 @@ TEST(LidarSimulator, DropoutScaleAndNoiseScale)
 {
   SimulatorConfig config;
   config.noise_scale = config.dropout_scale = 0.0;
-  LidarSimulator clean(hdl64e(), config), usual;
+  LidarSimulator clean(SensorModel::load("hdl64e"), config), usual;
   const PanopticCloud exact = scanOf(clean, 3), noisy = scanOf(usual, 3);
   double squares = 0.0;
   int both = 0, dropped = 0;
@@ -251,7 +252,7 @@ TEST(LidarSimulator, DropoutScaleAndNoiseScale)
     const double error = q.getVector3fMap().norm() - p.getVector3fMap().norm();
     squares += error * error, ++both;
   }
-  EXPECT_NEAR(std::sqrt(squares / both), hdl64e().range_noise_m, 0.001);
+  EXPECT_NEAR(std::sqrt(squares / both), SensorModel::load("hdl64e").range_noise_m, 0.001);
   EXPECT_GT(dropped, both / 100);
 }
 }  // namespace lidar_panoptic_clustering

@@ -1,13 +1,11 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 
-#include "shipped_class_tables.h"
+#include "core/yaml_source.h"
+#include "shipped_files.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
-#include <filesystem>
-#include <fstream>
-#include <sstream>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -78,17 +76,6 @@ private:
   std::string where_;
 };
 
-YAML::Node parseYaml(const std::string& yaml, const std::string& source)
-{
-  try
-  {
-    return YAML::Load(yaml);
-  }
-  catch (const YAML::Exception& error)
-  {
-    throw std::invalid_argument(source + ": not a YAML file: " + error.what());
-  }
-}
 }  // namespace
 
 ClassTable ClassTable::parse(const std::string& yaml, const std::string& source)
@@ -139,27 +126,13 @@ catch (const YAML::Exception& error)
 
 ClassTable ClassTable::load(const std::string& name_or_path)
 {
-  const auto shipped = shippedClassTables().find(name_or_path);
-  if (shipped != shippedClassTables().end()) return parse(shipped->second, shipped->first);
-
-  std::ifstream file(name_or_path);
-  std::stringstream text;
-  text << file.rdbuf();
-  if (!std::filesystem::is_regular_file(name_or_path) || !file.is_open() || file.bad())
-  {
-    std::string known;
-    for (const auto& name : shippedNames()) known += ", " + name;
-    throw std::runtime_error("class table '" + name_or_path + "': cannot be read; expected a YAML file or one of" +
-                             known.substr(1));
-  }
-  return parse(text.str(), name_or_path);
+  const YamlSource yaml = readYamlSource("class table", shippedClassTables(), name_or_path);
+  return parse(yaml.text, yaml.source);
 }
 
 std::vector<std::string> ClassTable::shippedNames()
 {
-  std::vector<std::string> names;
-  for (const auto& [name, yaml] : shippedClassTables()) names.push_back(name);
-  return names;
+  return namesOf(shippedClassTables());
 }
 
 ClassIndex ClassTable::findByName(const std::string& name) const

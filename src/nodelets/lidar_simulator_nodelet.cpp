@@ -39,12 +39,16 @@ Config readConfig(const ros::NodeHandle& nh)
   return config;
 }
 
+std::string readName(const ros::NodeHandle& nh, const std::string& name, const std::string& otherwise)
+{
+  const ParameterMap given = readParameters(nh, {ParameterInfo{name, otherwise, 0.0, 0.0, {}}});
+  return given.empty() ? otherwise : std::get<std::string>(given.begin()->second);
+}
+
 /// tf2 knows no frame that is empty or begins with a slash.
 std::string readFrameId(const ros::NodeHandle& nh)
 {
-  const ParameterInfo info{"frame_id", std::string("lidar"), 0.0, 0.0, {}};
-  const ParameterMap given = readParameters(nh, {info});
-  const auto frame_id = std::get<std::string>(given.empty() ? info.value : given.begin()->second);
+  const std::string frame_id = readName(nh, "frame_id", "lidar");
   if (frame_id.empty() || frame_id.front() == '/')
     throw std::invalid_argument("parameter " + nh.resolveName("frame_id") +
                                 ": expected a name without a leading slash, got '" + frame_id + "'");
@@ -69,7 +73,7 @@ geometry_msgs::TransformStamped transformOf(const simulation::Pose& pose, const 
 /// Publishes what a simulated lidar sees on its way down a street, in real time.
 ///
 /// ~output: labelled cloud; ~ground_truth: the same with true instances; tf: world -> frame_id. Scans are made only
-/// while someone listens; the drive goes on meanwhile.
+/// while someone listens; the drive goes on meanwhile. ~sensor: a sensor that ships with the package, or a YAML file.
 class LidarSimulatorNodelet : public nodelet::Nodelet
 {
 private:
@@ -80,7 +84,8 @@ private:
     {
       frames_ = readConfig<NodeletConfig>(nh).frames;
       frame_id_ = readFrameId(nh);
-      simulator_ = std::make_unique<LidarSimulator>(hdl64e(), readConfig<SimulatorConfig>(nh));
+      simulator_ = std::make_unique<LidarSimulator>(SensorModel::load(readName(nh, "sensor", "hdl64e")),
+                                                    readConfig<SimulatorConfig>(nh));
     }
     catch (const std::exception& error)
     {

@@ -1,6 +1,7 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/projection/organizer.h"
 #include "lidar_panoptic_clustering/projection/original_cloud.h"
+#include "lidar_panoptic_clustering/projection/original_labeller.h"
 #include "nodelets/cloud_subscription.h"
 #include "nodelets/frame_history.h"
 #include "nodelets/label_matcher.h"
@@ -90,6 +91,7 @@ private:
     try
     {
       applyParameters(config_, readParameters(nh, describeParameters(config_)));
+      config_.organizer.labels = config_.labeller.labels == "field";
       labeller_ = std::make_unique<ScanLabeller>(config_.labeller);
       organizer_ = std::make_unique<Organizer>(config_.organizer);
       original_labeller_ = std::make_unique<OriginalLabeller>(labeller_->classTable());
@@ -235,7 +237,7 @@ private:
     }
   }
 
-  /// The image itself goes out, by pointer; what is kept of it is its size.
+  /// The image itself goes out, by pointer; its size is what carryBack() needs of it.
   void publish(const std_msgs::Header& header, OrganizedScan& scan)
   {
     const LabelledCloud::Ptr cloud(new LabelledCloud);
@@ -256,15 +258,33 @@ private:
     try
     {
       original_labeller_->carryBack(frame->scan, panoptic, label_, instance_);
-      const auto message = boost::make_shared<sensor_msgs::PointCloud2>();
-      writeOriginal(*frame->message, label_, instance_, *message);
-      original_.publish(message);
+      publishOriginal(*frame->message);
     }
     catch (const std::exception& error)
     {
       refuse("cloud on " + getPrivateNodeHandle().resolveName("panoptic") + " dropped: " + error.what());
     }
     history_->recycle(std::move(frame));
+  }
+
+  void publishOriginal(const sensor_msgs::PointCloud2& sent)
+  {
+    addLabels(viewOf(sent), label_, instance_, labelled_);
+    const auto message = boost::make_shared<sensor_msgs::PointCloud2>();
+    message->header = sent.header;
+    message->width = sent.width, message->height = sent.height;
+    message->is_bigendian = sent.is_bigendian, message->is_dense = sent.is_dense;
+    message->fields.resize(labelled_.fields.size());
+    for (std::size_t i = 0; i < labelled_.fields.size(); ++i)
+    {
+      message->fields[i].name = labelled_.fields[i].name;
+      message->fields[i].offset = labelled_.fields[i].offset;
+      message->fields[i].datatype = labelled_.fields[i].datatype;
+      message->fields[i].count = labelled_.fields[i].count;
+    }
+    message->point_step = labelled_.point_step, message->row_step = labelled_.row_step;
+    message->data.swap(labelled_.data);
+    original_.publish(message);
   }
 
   void refuse(const std::string& error)
@@ -281,6 +301,7 @@ private:
   std::unique_ptr<LabelMatcher> matcher_;
   std::unique_ptr<FrameHistory> history_;
   std::vector<std::uint32_t> label_, instance_;  ///< by sent point
+  OriginalCloud labelled_;
   std::uint64_t without_scan_ = 0;
   StreamDiagnostics diagnostics_;
 

@@ -75,8 +75,8 @@ void pixelInstances(const ThingScan& things, const Instances& instances, std::ve
       instance_of_pixel[row * things.columns + things.points[i].column] = instances.id[i];
 }
 
-HiddenPointLabeller::HiddenPointLabeller(std::shared_ptr<const ClassTable> table)
-    : table_(std::move(table)), thing_class_(table_->size(), kUnknownClass)
+HiddenPointLabeller::HiddenPointLabeller(std::shared_ptr<const ClassTable> table, std::uint32_t class_bits)
+    : table_(std::move(table)), class_bits_(class_bits), thing_class_(table_->size(), kUnknownClass)
 {
   for (std::size_t i = 0; i < table_->size(); ++i)
     if ((*table_)[static_cast<ClassIndex>(i)].isThing()) thing_class_[i] = static_cast<ClassIndex>(i);
@@ -95,7 +95,7 @@ void HiddenPointLabeller::label(const std::vector<ScanPoint>& scan, const std::v
   orphan_points_.clear();
   for (const std::uint32_t point : hidden_)
   {
-    const ClassIndex class_index = table_->find(labels[point] & 0xFFFFU);
+    const ClassIndex class_index = table_->find(labels[point] & class_bits_);
     const std::uint32_t pixel = projection.pixel_of_point[point];
     const int columns = columnsWithinReach(scan[point], projection.cloud.width);
     auto owner = nearestOwner(scan, projection, point, class_index, Window(projection.cloud, pixel, kRows, columns));
@@ -120,7 +120,7 @@ void HiddenPointLabeller::takeOwners(const std::vector<std::uint32_t>& labels, c
   largest_id_ = 0;
   for (std::uint32_t point = 0; point < labels.size(); ++point)
   {
-    const ClassIndex class_index = thing_class_[table_->find(labels[point] & 0xFFFFU)];
+    const ClassIndex class_index = thing_class_[table_->find(labels[point] & class_bits_)];
     if (class_index == kUnknownClass) continue;
     const std::uint32_t pixel = projection.pixel_of_point[point];
     if (projection.owner_of_pixel[pixel] != point)

@@ -34,44 +34,6 @@ std::string bytes(std::uint64_t n)
   return std::to_string(n) + " bytes";
 }
 
-/// Widths, heights and steps are 32-bit numbers, so that no product of two of them overflows 64 bits.
-void checkSizes(const RawCloud& cloud)
-{
-  if (cloud.is_bigendian) fail("little-endian data", "is_bigendian = true");
-
-  const std::uint64_t row_bytes = std::uint64_t{cloud.width} * cloud.point_step;
-  const std::uint64_t all_bytes = std::uint64_t{cloud.height} * cloud.row_step;
-  if (cloud.width > 0 && cloud.height > 0)
-  {
-    if (cloud.point_step == 0) fail("a point_step above 0", "0");
-    if (cloud.row_step < row_bytes)
-      fail("a row_step of at least width * point_step = " + std::to_string(cloud.width) + " * " +
-               bytes(cloud.point_step),
-           bytes(cloud.row_step));
-  }
-  else if (std::max(cloud.width, cloud.height) > kMaxEmptySide)
-  {
-    fail("at most " + std::to_string(kMaxEmptySide) + " rows or columns in an empty cloud",
-         std::to_string(cloud.width) + " x " + std::to_string(cloud.height));
-  }
-  if (cloud.data_size != all_bytes)
-    fail("data of height * row_step = " + std::to_string(cloud.height) + " * " + bytes(cloud.row_step),
-         bytes(cloud.data_size));
-}
-
-void checkField(const RawCloud& cloud, const RawField& field)
-{
-  const std::string which = "field '" + field.name + "' ";
-  if (!isNumberType(field.datatype))
-    fail(which + "of a datatype from 1 (int8) to 8 (float64)", "datatype " + std::to_string(field.datatype));
-  if (field.count == 0) fail(which + "with a count of at least 1", "count 0");
-
-  const std::uint64_t size = std::uint64_t{kTypes[field.datatype].bytes} * field.count;
-  if (field.offset + size > cloud.point_step)
-    fail(which + "inside the point of " + bytes(cloud.point_step),
-         bytes(size) + " at offset " + std::to_string(field.offset));
-}
-
 template <class T>
 T load(const std::uint8_t* from)
 {
@@ -221,11 +183,54 @@ std::string describeFields(const RawCloud& cloud)
   return text.empty() ? "no fields" : text;
 }
 
+std::uint32_t bytesOfType(std::uint8_t datatype)
+{
+  return isNumberType(datatype) ? kTypes[datatype].bytes : 0;
+}
+
 const RawField* findField(const RawCloud& cloud, const std::string& name)
 {
   for (const auto& field : cloud.fields)
     if (field.name == name) return &field;
   return nullptr;
+}
+
+/// Widths, heights and steps are 32-bit numbers, so that no product of two of them overflows 64 bits.
+void checkSizes(const RawCloud& cloud)
+{
+  if (cloud.is_bigendian) fail("little-endian data", "is_bigendian = true");
+
+  const std::uint64_t row_bytes = std::uint64_t{cloud.width} * cloud.point_step;
+  const std::uint64_t all_bytes = std::uint64_t{cloud.height} * cloud.row_step;
+  if (cloud.width > 0 && cloud.height > 0)
+  {
+    if (cloud.point_step == 0) fail("a point_step above 0", "0");
+    if (cloud.row_step < row_bytes)
+      fail("a row_step of at least width * point_step = " + std::to_string(cloud.width) + " * " +
+               bytes(cloud.point_step),
+           bytes(cloud.row_step));
+  }
+  else if (std::max(cloud.width, cloud.height) > kMaxEmptySide)
+  {
+    fail("at most " + std::to_string(kMaxEmptySide) + " rows or columns in an empty cloud",
+         std::to_string(cloud.width) + " x " + std::to_string(cloud.height));
+  }
+  if (cloud.data_size != all_bytes)
+    fail("data of height * row_step = " + std::to_string(cloud.height) + " * " + bytes(cloud.row_step),
+         bytes(cloud.data_size));
+}
+
+void checkField(const RawCloud& cloud, const RawField& field)
+{
+  const std::string which = "field '" + field.name + "' ";
+  if (!isNumberType(field.datatype))
+    fail(which + "of a datatype from 1 (int8) to 8 (float64)", "datatype " + std::to_string(field.datatype));
+  if (field.count == 0) fail(which + "with a count of at least 1", "count 0");
+
+  const std::uint64_t size = std::uint64_t{kTypes[field.datatype].bytes} * field.count;
+  if (field.offset + size > cloud.point_step)
+    fail(which + "inside the point of " + bytes(cloud.point_step),
+         bytes(size) + " at offset " + std::to_string(field.offset));
 }
 
 void checkLayout(const RawCloud& cloud, const std::vector<std::string>& required,

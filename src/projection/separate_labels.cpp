@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/projection/separate_labels.h"
 
+#include "lidar_panoptic_clustering/projection/scan_fields.h"
+
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -83,10 +85,11 @@ void readLabelCloud(const RawCloud& labels, const std::string& label_field, cons
     fail("a label cloud with the cloud's points in the same order, " + size(cloud.height, cloud.width) +
              " or all in one row",
          size(labels.height, labels.width));
-  checkLayout(labels, {label_field});
+  checkSizes(labels);
+  const RawField& field = findLabelField(labels, label_field);
+  checkField(labels, field);
 
   label_of_point.resize(points);
-  const RawField& field = *findField(labels, label_field);
   for (std::size_t row = 0; row < labels.height && points > 0; ++row)
     readIds({labels.point(row, 0), labels.point_step, labels.width}, field, label_of_point.data() + row * labels.width,
             sizeof(std::uint32_t));

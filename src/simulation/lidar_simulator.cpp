@@ -39,7 +39,7 @@ struct LidarSimulator::Echo
   Surface surface;
 };
 
-LidarSimulator::LidarSimulator(const LidarModel& model, const SimulatorConfig& config)
+LidarSimulator::LidarSimulator(const SensorModel& model, const SimulatorConfig& config)
     : model_(model), config_(validated(config)), street_(streetConfig(config), trafficConfig(config)), caster_(model)
 {
 }

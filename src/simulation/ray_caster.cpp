@@ -4,6 +4,7 @@
 #include <array>
 #include <cmath>
 #include <functional>
+#include <utility>
 
 namespace lidar_panoptic_clustering::simulation
 {
@@ -64,10 +65,14 @@ Silhouette silhouette(const Eigen::Vector3f& center, const Eigen::Matrix3f& half
 }
 }  // namespace
 
-RayCaster::RayCaster(const LidarModel& model)
-    : rows_(model.rows()), columns_(model.columns), max_range_m_(model.max_range_m)
+RayCaster::RayCaster(const SensorModel& model)
+    : rows_(model.rows()),
+      columns_(model.columns),
+      max_range_m_(model.max_range_m),
+      fov_rad_(static_cast<float>(model.horizontal_fov_rad)),
+      full_turn_(model.fullTurn())
 {
-  validateModel(model);
+  validateSensorModel(model);
   for (const float elevation : model.elevations_rad)
   {
     tangents_.push_back(std::tan(elevation));
@@ -130,7 +135,7 @@ bool RayCaster::makeTarget(const Solid& solid, const Pose& sensor, Target& targe
   const float below = std::max({0.0F, box.low_z, -box.high_z});
   target.near_m = std::hypot(box.nearest, below) * (1.0F - kSlack) - kSlack;
   if (!boundRows(box.low_z, box.high_z, box.nearest, box.farthest, target)) return false;
-  boundColumns(box.first_azimuth, box.last_azimuth, target);
+  if (!boundColumns(box.first_azimuth, box.last_azimuth, target)) return false;
 
   target.shape = solid.shape;
   // the axes are orthogonal: each row of the inverse is an axis over its squared length
@@ -154,15 +159,36 @@ bool RayCaster::boundRows(float low_z, float high_z, float nearest_m, float fart
   return target.row_begin < target.row_end;
 }
 
-void RayCaster::boundColumns(float first_azimuth, float last_azimuth, Target& target) const
+bool RayCaster::boundColumns(float first_azimuth, float last_azimuth, Target& target) const
 {
-  // azimuth falls as the column rises; columns beyond the last wrap around
-  const float per_radian = static_cast<float>(columns_) / (2.0F * kPi);
-  const auto begin = static_cast<std::int32_t>(std::ceil((kPi - last_azimuth) * per_radian - 0.5F - 0.01F));
-  const auto end = static_cast<std::int32_t>(std::floor((kPi - first_azimuth) * per_radian - 0.5F + 0.01F)) + 1;
+  // azimuth falls as the column rises
+  const float per_radian = static_cast<float>(columns_) / fov_rad_;
+  const auto columnsOf = [&](float turn)
+  {
+    const float left = 0.5F * fov_rad_ + turn;
+    return std::make_pair(
+        static_cast<std::int32_t>(std::ceil((left - last_azimuth) * per_radian - 0.5F - 0.01F)),
+        static_cast<std::int32_t>(std::floor((left - first_azimuth) * per_radian - 0.5F + 0.01F)) + 1);
+  };
   const auto columns = static_cast<std::int32_t>(columns_);
-  target.column_begin = ((begin % columns) + columns) % columns;
-  target.column_count = std::clamp(end - begin, 0, columns);
+  if (full_turn_)  // columns beyond the last wrap around
+  {
+    const auto [begin, end] = columnsOf(0.0F);
+    target.column_begin = ((begin % columns) + columns) % columns;
+    target.column_count = std::clamp(end - begin, 0, columns);
+    return true;
+  }
+  std::int32_t first = columns, last = 0;  // what lies behind a wide sector may reach into both of its ends
+  for (const float turn : {-2.0F * kPi, 0.0F, 2.0F * kPi})
+  {
+    const auto [begin, end] = columnsOf(turn);
+    if (begin >= columns || end <= 0 || begin >= end) continue;
+    first = std::min(first, std::max(begin, 0));
+    last = std::max(last, std::min(end, columns));
+  }
+  target.column_begin = first;
+  target.column_count = std::max(0, last - first);
+  return target.column_count > 0;
 }
 
 void RayCaster::render(const Target& target, std::int32_t index, std::uint64_t key)

@@ -28,7 +28,8 @@ void pixelInstances(const ThingScan& things, const Instances& instances, std::ve
 class HiddenPointLabeller
 {
 public:
-  explicit HiddenPointLabeller(std::shared_ptr<const ClassTable> table);
+  /// `class_bits`: the bits of a label that are its class; files of SemanticKITTI have instances in the others.
+  explicit HiddenPointLabeller(std::shared_ptr<const ClassTable> table, std::uint32_t class_bits = 0xFFFFU);
 
   /// `labels`: the classes given to PointProjector::project together with `scan`; `projection`: what it returned;
   /// `instance_of_pixel`: what clustering made of its cloud, see pixelInstances().
@@ -61,6 +62,7 @@ private:
   void numberOrphans(const LabelledCloud& image, std::vector<std::uint32_t>& instance);
 
   std::shared_ptr<const ClassTable> table_;
+  std::uint32_t class_bits_;
   std::vector<ClassIndex> thing_class_;  ///< by class index: itself for things, kUnknownClass for all else
   std::vector<ClassIndex> pixel_class_;  ///< thing class of the pixel's owner
   std::vector<std::uint32_t> hidden_;    ///< thing points that own no pixel

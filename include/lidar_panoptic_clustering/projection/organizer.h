@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/projection/layout_probe.h"
+#include "lidar_panoptic_clustering/projection/organized_scan.h"
 #include "lidar_panoptic_clustering/projection/raw_cloud.h"
 
 #include <optional>
@@ -8,26 +10,24 @@
 
 namespace lidar_panoptic_clustering
 {
-/// What the rows of a driver's organised cloud are.
-enum class Orientation
-{
-  kRowsAreRings,   ///< height = rings, as ouster-ros has it
-  kRowsAreFirings  ///< height = firings, as the velodyne driver has it
-};
-
-/// "auto", "rows_are_rings", "rows_are_firings"
-const std::vector<std::string>& orientationNames();
+/// "auto", "organized", "ring", "beams", "unfold", "merged"
+const std::vector<std::string>& layoutNames();
 
 struct OrganizerConfig
 {
+  std::string layout = "auto";
   std::string orientation = "auto";
-  std::string label_field = "label";  ///< class ids, of any number type
-  std::string intensity_field = "intensity";
-  std::string ring_field = "ring";  ///< looked at by "auto" alone, and only where it is there
+  std::string label_field;      ///< class ids, of any number type; empty: the first usual name, see FieldNames
+  std::string intensity_field;  ///< likewise
+  std::string ring_field;       ///< likewise
+
+  /// Not a parameter: whether the cloud carries class ids; without, see labelPoints() and labelPixels().
+  bool labels = true;
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
+    visitor("layout", self.layout, layoutNames());
     visitor("orientation", self.orientation, orientationNames());
     visitor("label_field", self.label_field, std::vector<std::string>{});
     visitor("intensity_field", self.intensity_field, std::vector<std::string>{});
@@ -35,33 +35,32 @@ struct OrganizerConfig
   }
 };
 
-/// Finds out what the rows are: the field `ring_field` is constant along a scan line; without it, or where it tells
-/// nothing, neighbouring returns of one scan line share their elevation, those of two lines do not.
+/// Turns a cloud as a driver publishes it into an organised labelled one, whose rows are scan lines, the highest first.
 ///
-/// Looks at a few thousand returns whatever the size of the cloud. Empty where these do not decide: hardly any returns,
-/// or a frame so tilted against the sensor's that elevation changes as fast along a line as across. Throws
-/// std::invalid_argument as checkLayout() does.
-std::optional<Orientation> detectOrientation(const RawCloud& cloud, const std::string& ring_field);
-
-/// Turns a driver's organised cloud into an organised labelled one, whose rows are scan lines.
-///
-/// The order of rings and of firings stays as sent. What is no return (NaN, infinity, exactly (0, 0, 0)) gets NaN
-/// coordinates. Linear in the points. Not shared between threads.
+/// Each cloud is looked at afresh: a sensor may change its resolution or layout from one to the next. What is no return
+/// (NaN, infinity, exactly (0, 0, 0)) gets NaN coordinates. Linear in points and pixels; allocates only while buffers
+/// grow. Not shared between threads.
 class Organizer
 {
 public:
-  /// Throws std::invalid_argument when `config` names no orientation.
+  /// Throws std::invalid_argument when `config` has a value outside its range.
   explicit Organizer(const OrganizerConfig& config);
 
-  /// Fills `out` but for its header. Throws std::invalid_argument, with what was expected and found, for clouds that
-  /// are not organised, lack a field or contradict themselves.
-  void organize(const RawCloud& raw, LabelledCloud& out);
+  /// Fills `out` but for its cloud's header. Throws std::invalid_argument, with what was expected and found, for clouds
+  /// that cannot be organised, lack a field or contradict themselves; `out` then holds nothing of use.
+  void organize(const RawCloud& raw, OrganizedScan& out);
 
 private:
+  Layout layoutOf(const RawCloud& raw, const ScanFields& fields) const;
+  void takeRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   Orientation orientationOf(const RawCloud& raw);
 
   OrganizerConfig config_;
-  std::optional<Orientation> fixed_;  ///< by the config; empty for "auto"
-  std::optional<Orientation> last_;   ///< a sensor does not turn: what an undecided scan goes by
+  FieldNames names_;
+  std::optional<Layout> fixed_layout_;            ///< by the config; empty for "auto"
+  std::optional<Orientation> fixed_orientation_;  ///< likewise
+  LayoutProbe probe_;
+  std::optional<Orientation> last_orientation_;  ///< a sensor does not turn: what an undecided scan goes by
+  std::optional<bool> last_highest_first_;       ///< likewise
 };
 }  // namespace lidar_panoptic_clustering

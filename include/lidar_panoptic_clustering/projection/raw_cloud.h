@@ -60,8 +60,18 @@ constexpr std::uint32_t kUnreadableLabel = 0xFFFFFFFFU;
 /// "x float32, y float32, label uint8", for messages.
 std::string describeFields(const RawCloud& cloud);
 
+/// Bytes of one number of a field's datatype; 0 for a datatype that is none.
+std::uint32_t bytesOfType(std::uint8_t datatype);
+
 /// The field called `name`, the first where there are several; nullptr where there is none.
 const RawField* findField(const RawCloud& cloud, const std::string& name);
+
+/// Checks byte order, point_step, row_step and the size of the data against each other. Throws std::invalid_argument
+/// that says what was expected and what was found.
+void checkSizes(const RawCloud& cloud);
+
+/// Checks a field's type, count and place inside the point; throws likewise.
+void checkField(const RawCloud& cloud, const RawField& field);
 
 /// Makes sure that reading the named fields of every point stays inside the data.
 ///

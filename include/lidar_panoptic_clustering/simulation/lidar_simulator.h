@@ -1,8 +1,8 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/point_types.h"
+#include "lidar_panoptic_clustering/core/sensor_model.h"
 #include "lidar_panoptic_clustering/simulation/ground.h"
-#include "lidar_panoptic_clustering/simulation/lidar_model.h"
 #include "lidar_panoptic_clustering/simulation/pose.h"
 #include "lidar_panoptic_clustering/simulation/ray_caster.h"
 #include "lidar_panoptic_clustering/simulation/street.h"
@@ -17,7 +17,7 @@ struct SimulatorConfig
   int seed = 1;                     ///< another street with another traffic
   double rate_hz = 10.0;            ///< frame k is the moment k / rate_hz
   double speed_mps = 8.0;           ///< of the ego vehicle, along the street
-  double noise_scale = 1.0;         ///< factor on the lidar model's range noise
+  double noise_scale = 1.0;         ///< factor on the sensor model's range noise
   double dropout_scale = 1.0;       ///< factor on the probability that a beam does not return
   double traffic_density = 0.6;     ///< share of the places on the lanes that are taken
   double parking_density = 0.65;    ///< share of the parking strip that is taken
@@ -45,9 +45,9 @@ class LidarSimulator
 {
 public:
   /// Throws std::invalid_argument, naming the parameter, where model or config is out of range.
-  explicit LidarSimulator(const LidarModel& model = hdl64e(), const SimulatorConfig& config = {});
+  explicit LidarSimulator(const SensorModel& model = SensorModel::load("hdl64e"), const SimulatorConfig& config = {});
 
-  /// Fills `out` with one scan: height = rings (row 0 the highest), width = columns (see LidarModel::azimuth), sensor
+  /// Fills `out` with one scan: height = rings (row 0 the highest), width = columns (see SensorModel::azimuth), sensor
   /// frame x forward, y left, z up. No return is NaN. Labels are raw SemanticKITTI ids, resting and moving ones;
   /// `instance` is 0 for stuff, for things the same 16-bit id from frame to frame; intensity 0..1; rgb 0. The header is
   /// left alone. Throws std::invalid_argument beyond 1e9 m of driving or 1e9 s.
@@ -56,7 +56,7 @@ public:
   /// The sensor in the world; throws as scan does.
   simulation::Pose pose(std::uint64_t frame) const;
 
-  const LidarModel& model() const { return model_; }
+  const SensorModel& model() const { return model_; }
   const SimulatorConfig& config() const { return config_; }
 
 private:
@@ -67,7 +67,7 @@ private:
   Echo solidEcho(const simulation::BeamEnd& end, const Eigen::Vector3f& direction) const;
   void paint(const Echo& echo, const Eigen::Vector3f& direction, std::uint64_t beam_key, PanopticPoint& point) const;
 
-  LidarModel model_;
+  SensorModel model_;
   SimulatorConfig config_;
   simulation::Street street_;
   simulation::RayCaster caster_;

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/simulation/lidar_model.h"
+#include "lidar_panoptic_clustering/core/sensor_model.h"
 #include "lidar_panoptic_clustering/simulation/pose.h"
 #include "lidar_panoptic_clustering/simulation/random.h"
 #include "lidar_panoptic_clustering/simulation/solid.h"
@@ -39,8 +39,8 @@ struct BeamEnd
 class RayCaster
 {
 public:
-  /// Throws std::invalid_argument as validateModel does.
-  explicit RayCaster(const LidarModel& model);
+  /// Throws std::invalid_argument as validateSensorModel does.
+  explicit RayCaster(const SensorModel& model);
 
   /// Beams end at max_range_m and at the plane mount_height_m below the sensor, whatever comes first. `key` decides
   /// which beams pass glass and foliage; the same arguments give the same result.
@@ -70,11 +70,12 @@ public:
 private:
   bool makeTarget(const Solid& solid, const Pose& sensor, Target& target) const;
   bool boundRows(float low_z, float high_z, float nearest_m, float farthest_m, Target& target) const;
-  void boundColumns(float first_azimuth, float last_azimuth, Target& target) const;
+  bool boundColumns(float first_azimuth, float last_azimuth, Target& target) const;
   void render(const Target& target, std::int32_t index, std::uint64_t key);
 
   std::uint32_t rows_, columns_;
-  float max_range_m_;
+  float max_range_m_, fov_rad_;
+  bool full_turn_;
   std::vector<float> tangents_, limits_;     ///< a row
   std::vector<Eigen::Vector3f> directions_;  ///< column by column: a solid's rows lie together
   std::vector<BeamEnd> ends_;

@@ -1,0 +1,83 @@
+#include "lidar_panoptic_clustering/projection/organized_rows.h"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+
+bool isReturn(const ScanPoint& p)
+{
+  return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F);
+}
+
+void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
+{
+  const std::size_t size = std::size_t{raw.width} * raw.height;
+  const bool rows_are_rings = orientation == Orientation::kRowsAreRings;
+  out.points.resize(size);
+  out.labels.resize(size);
+  Projection& image = out.image;
+  image.cloud.points.resize(size);
+  image.cloud.width = rows_are_rings ? raw.width : raw.height;
+  image.cloud.height = rows_are_rings ? raw.height : raw.width;
+  image.cloud.is_dense = false;
+  image.rings = image.cloud.height;
+  image.pixel_of_point.resize(size);
+  image.owner_of_pixel.resize(size);
+  image.points.resize(size);
+  image.begin.resize(size + 1);
+  for (std::size_t i = 0; i <= size; ++i) image.begin[i] = static_cast<std::uint32_t>(i);
+}
+
+/// Gives `count` neighbouring pixels their points, which lie `step` apart as sent.
+void paint(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t step, std::size_t count)
+{
+  Projection& image = out.image;
+  for (std::size_t end = pixel + count; pixel < end; ++pixel, point += step)
+  {
+    const ScanPoint& from = out.points[point];
+    const bool is_return = isReturn(from);
+    LabelledPoint& to = image.cloud.points[pixel];
+    to.x = is_return ? from.x : kNaN;
+    to.y = is_return ? from.y : kNaN;
+    to.z = is_return ? from.z : kNaN;
+    to.data[3] = 1.0F;
+    to.intensity = from.remission;
+    to.label = out.labels[point];
+    image.pixel_of_point[point] = static_cast<std::uint32_t>(pixel);
+    image.points[pixel] = static_cast<std::uint32_t>(point);
+    image.owner_of_pixel[pixel] = is_return ? static_cast<std::uint32_t>(point) : Projection::kNone;
+  }
+}
+}  // namespace
+
+void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement& placement, OrganizedScan& out)
+{
+  out.organized_input = true;
+  resize(raw, placement.orientation, out);
+  const std::size_t width = raw.width, height = raw.height;
+  const bool rows_are_rings = placement.orientation == Orientation::kRowsAreRings;
+  const std::size_t lines = rows_are_rings ? height : width;
+  const auto lineBegin = [&](std::size_t ring)
+  { return (placement.highest_first ? ring : lines - 1 - ring) * out.image.cloud.width; };
+
+  // what was read of a tile is still in the cache when its pixels are painted
+  const std::size_t tile = rows_are_rings ? 1 : 16;
+  for (std::size_t row = 0; row < height && width > 0; row += tile)
+  {
+    const std::size_t rows = std::min(tile, height - row);
+    for (std::size_t r = row; r < row + rows; ++r)
+      readScan(raw, fields, r, 0, width, &out.points[r * width], &out.labels[r * width]);
+    if (rows_are_rings)
+      paint(out, lineBegin(row), row * width, 1, width);
+    else
+      for (std::size_t ring = 0; ring < width; ++ring)
+        paint(out, lineBegin(ring) + row, row * width + ring, width, rows);
+  }
+}
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,67 @@
+#include "lidar_panoptic_clustering/projection/original_labeller.h"
+
+#include <algorithm>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr std::uint32_t kNoVote = 0xFFFFFFFFU;
+}
+
+OriginalLabeller::OriginalLabeller(std::shared_ptr<const ClassTable> table)
+    : table_(std::move(table)), hidden_points_(table_, 0xFFFFFFFFU)
+{
+}
+
+void OriginalLabeller::carryBack(const OrganizedScan& scan, const PanopticCloud& clustered,
+                                 std::vector<std::uint32_t>& label, std::vector<std::uint32_t>& instance)
+{
+  const Projection& image = scan.image;
+  if (clustered.width != image.cloud.width || clustered.height != image.cloud.height ||
+      clustered.size() != image.owner_of_pixel.size())
+    throw std::invalid_argument("expected a clustered cloud of " + std::to_string(image.cloud.height) + " x " +
+                                std::to_string(image.cloud.width) + " (rows x columns), found " +
+                                std::to_string(clustered.height) + " x " + std::to_string(clustered.width) + " with " +
+                                std::to_string(clustered.size()) + " points");
+  if (scan.organized_input)
+  {
+    label.resize(scan.points.size());
+    instance.resize(scan.points.size());
+    for (std::size_t i = 0; i < scan.points.size(); ++i)
+    {
+      const PanopticPoint& from = clustered.points[image.pixel_of_point[i]];
+      label[i] = from.label;
+      instance[i] = from.instance;
+    }
+    return;
+  }
+  pixelInstances(clustered, instance_of_pixel_);
+  hidden_points_.label(scan.points, scan.labels, image, instance_of_pixel_, instance);
+  takeVotes(scan, clustered);
+  label = scan.labels;
+  for (std::size_t i = 0; i < label.size(); ++i)
+  {
+    if (instance[i] >= voted_label_.size()) continue;  // a hidden object of its own
+    const std::uint32_t voted = voted_label_[instance[i]];
+    if (voted != kNoVote && table_->find(label[i]) != table_->find(voted)) label[i] = voted;
+  }
+}
+
+/// The vote changes the labels of the outvoted points alone, all of an instance to the same one.
+void OriginalLabeller::takeVotes(const OrganizedScan& scan, const PanopticCloud& clustered)
+{
+  std::uint32_t largest = 0;
+  for (const std::uint32_t id : instance_of_pixel_) largest = std::max(largest, id);
+  voted_label_.assign(std::size_t{largest} + 1, kNoVote);
+  for (std::size_t pixel = 0; pixel < clustered.size(); ++pixel)
+  {
+    const std::uint32_t owner = scan.image.owner_of_pixel[pixel], id = instance_of_pixel_[pixel];
+    if (owner == Projection::kNone || id == 0) continue;
+    if (clustered.points[pixel].label != scan.labels[owner]) voted_label_[id] = clustered.points[pixel].label;
+  }
+}
+}  // namespace lidar_panoptic_clustering

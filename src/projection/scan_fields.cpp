@@ -1,0 +1,107 @@
+#include "lidar_panoptic_clustering/projection/scan_fields.h"
+
+#include <algorithm>
+#include <array>
+#include <stdexcept>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+/// Names in common use, the likeliest first, and the parameter that names another.
+struct UsualNames
+{
+  const char* parameter;
+  const char* content;
+  std::array<const char*, 4> names;  ///< null for none
+};
+
+// Autoware: class_id; ouster-ros: reflectivity; SemanticKITTI: remission; hesai, robosense and ouster-ros: ring
+constexpr UsualNames kLabel = {"label_field", "class ids", {"label", "class_id", "semantic", "class"}};
+constexpr UsualNames kIntensity = {"intensity_field", "intensities", {"intensity", "reflectivity", "remission"}};
+constexpr UsualNames kRing = {"ring_field", "ring numbers", {"ring", "channel"}};
+
+const RawField* find(const RawCloud& cloud, const char* name)
+{
+  for (const auto& field : cloud.fields)
+    if (field.name == name) return &field;
+  return nullptr;
+}
+
+const RawField* find(const RawCloud& cloud, const std::string& given, const UsualNames& usual)
+{
+  if (!given.empty())
+  {
+    const RawField* field = find(cloud, given.c_str());
+    if (field == nullptr)
+      throw std::invalid_argument("expected a field '" + given + "' with " + usual.content +
+                                  " (named by the parameter " + usual.parameter + "), found " + describeFields(cloud));
+    return field;
+  }
+  for (const char* name : usual.names)
+    if (const RawField* field = name != nullptr ? find(cloud, name) : nullptr) return field;
+  return nullptr;
+}
+
+[[noreturn]] void throwMissing(const RawCloud& cloud, const UsualNames& usual)
+{
+  std::string text = "expected a field";
+  for (const char* name : usual.names)
+    if (name != nullptr) text += (name == usual.names[0] ? " '" : ", '") + std::string(name) + '\'';
+  throw std::invalid_argument(text + " or one named by the parameter " + usual.parameter + ", with " + usual.content +
+                              ", found " + describeFields(cloud));
+}
+
+const RawField* findCoordinate(const RawCloud& cloud, const char* name)
+{
+  const RawField* field = find(cloud, name);
+  if (field == nullptr)
+    throw std::invalid_argument(std::string("expected a field '") + name + "', found " + describeFields(cloud));
+  return field;
+}
+}  // namespace
+
+const RawField& findLabelField(const RawCloud& cloud, const std::string& name)
+{
+  const RawField* field = find(cloud, name, kLabel);
+  if (field == nullptr) throwMissing(cloud, kLabel);
+  return *field;
+}
+
+ScanFields findScanFields(const RawCloud& cloud, const FieldNames& names, bool with_labels)
+{
+  checkSizes(cloud);
+  ScanFields fields;
+  fields.x = findCoordinate(cloud, "x");
+  fields.y = findCoordinate(cloud, "y");
+  fields.z = findCoordinate(cloud, "z");
+  if (with_labels) fields.label = &findLabelField(cloud, names.label);
+  fields.intensity = find(cloud, names.intensity, kIntensity);
+  fields.ring = find(cloud, names.ring, kRing);
+  for (const RawField* field : {fields.x, fields.y, fields.z, fields.label, fields.intensity, fields.ring})
+    if (field != nullptr) checkField(cloud, *field);
+  return fields;
+}
+
+void readScan(const RawCloud& cloud, const ScanFields& fields, std::size_t row, std::size_t column, std::size_t count,
+              ScanPoint* points, std::uint32_t* labels)
+{
+  constexpr std::size_t kRun = 256;  // all fields of a run are read from the cache
+  for (std::size_t begin = 0; begin < count; begin += kRun)
+  {
+    const PointRun run{cloud.point(row, column + begin), cloud.point_step, std::min(kRun, count - begin)};
+    ScanPoint* to = points + begin;
+    readFloats(run, *fields.x, &to->x, sizeof(ScanPoint));
+    readFloats(run, *fields.y, &to->y, sizeof(ScanPoint));
+    readFloats(run, *fields.z, &to->z, sizeof(ScanPoint));
+    if (fields.intensity != nullptr)
+      readFloats(run, *fields.intensity, &to->remission, sizeof(ScanPoint));
+    else
+      for (std::size_t i = 0; i < run.count; ++i) to[i].remission = 0.0F;
+    if (fields.label != nullptr)
+      readIds(run, *fields.label, labels + begin, sizeof(std::uint32_t));
+    else
+      std::fill_n(labels + begin, run.count, 0U);
+  }
+}
+}  // namespace lidar_panoptic_clustering
