@@ -127,7 +127,7 @@ sensor_msgs::ImagePtr labelImage(const LabelledCloud& cloud, const std::string& 
   image->header.stamp = stamp;
   image->height = cloud.height, image->width = cloud.width;
   image->encoding = encoding;
-  image->step = cloud.width * sizeof(Id) + 3;  // rows may be padded
+  image->step = static_cast<std::uint32_t>(cloud.width * sizeof(Id)) + 3;  // rows may be padded
   image->data.assign(std::size_t{image->height} * image->step, 0xAB);
   for (std::uint32_t row = 0; row < cloud.height; ++row)
     for (std::uint32_t column = 0; column < cloud.width; ++column)
