@@ -1,0 +1,64 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/point_types.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// z = slope_x x + slope_y y + offset [m], sensor frame.
+struct SlopedPlane
+{
+  float slope_x = 0.0F, slope_y = 0.0F, offset = 0.0F;
+
+  float heightOf(float x, float y, float z) const { return z - slope_x * x - slope_y * y - offset; }
+};
+
+/// The ground around the sensor, from a scan without labels: a height in each cell of a polar grid.
+///
+/// 1. The lowest return of each cell stands for it. 2. A plane is found among those within 20 m: a vote over slopes and
+/// offsets, then least squares; it takes in how the sensor is mounted, height and tilt (up to 12 degrees each way). 3.
+/// From under the sensor the ground is followed outwards: a cell's lowest return is ground where a slope of `max_slope`
+/// against the plane leads to it from the cells inside and beside; where there is none, the ground goes on as it was.
+/// 4. Cells without ground of their own lie on the line between the nearest seen inside and outside of them.
+///
+/// After Himmelsbach et al. 2010 ("Fast segmentation of 3D point clouds for ground vehicles", IV), with neighbouring
+/// sectors helping where one is hidden. The order of points means nothing. Linear in the points; keeps its memory.
+class GroundSurface
+{
+public:
+  GroundSurface();
+
+  /// Writes for each point of `cloud` how high it lies above the ground [m], NaN where there is no return.
+  /// Returns beyond `max_range_m` count as none. `max_slope`: rise over run, against the plane.
+  /// Returns whether there is ground; without it, heights are those above the lowest return.
+  bool measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<float>& height);
+
+  /// The plane under the sensor in the last scan.
+  const SlopedPlane& plane() const { return plane_; }
+
+private:
+  struct Low
+  {
+    float x, y, z;
+  };
+
+  void sortIntoCells(const LabelledCloud& cloud, float max_range_m);
+  bool findPlane();
+  void votePlane();
+  std::size_t fitPlane(float gate);
+  void follow(float max_slope);
+  void bridge();
+  void writeHeights(const LabelledCloud& cloud, std::vector<float>& height) const;
+
+  SlopedPlane plane_;
+  std::vector<std::uint16_t> cell_of_;  ///< by point
+  std::vector<float> range_of_;         ///< by point: horizontal [m]
+  std::vector<Low> lowest_;             ///< by cell, the bins of a sector in a row
+  std::vector<Low> near_;               ///< the lowest of the cells around the sensor
+  std::vector<float> ground_;           ///< by cell: above the plane [m]
+  std::vector<float> distance_;         ///< by cell: horizontal, where its ground was seen [m]
+  std::vector<float> unseen_;           ///< by cell: how far back the ground was seen last [m]; 0: here
+};
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,261 @@
+#include "lidar_panoptic_clustering/labelling/ground_surface.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+constexpr float kFar = std::numeric_limits<float>::infinity();
+constexpr std::uint16_t kNoCell = 0xFFFF;
+
+constexpr std::uint32_t kSectors = 180;  // two degrees: half a metre at 15 m
+
+// bins of range grow with it, as the rings on the ground move apart
+struct Zone
+{
+  float end, width;  // [m]
+};
+constexpr std::array<Zone, 4> kZones = {{{10.0F, 0.5F}, {30.0F, 1.0F}, {60.0F, 2.0F}, {120.0F, 4.0F}}};
+constexpr float kFinest = 0.5F;
+constexpr std::uint32_t kBins = 20 + 20 + 15 + 15;
+constexpr std::uint32_t kCells = kSectors * kBins;
+
+/// The bins' places, and the bin of each half metre.
+struct Bins
+{
+  std::array<float, kBins> middle{}, width{};
+  std::array<std::uint8_t, 240> of_step{};
+
+  Bins()
+  {
+    std::uint32_t bin = 0;
+    float begin = 0.0F;
+    for (const Zone& zone : kZones)
+      for (; begin < zone.end; begin += zone.width, ++bin)
+      {
+        middle[bin] = begin + 0.5F * zone.width, width[bin] = zone.width;
+        const auto first = static_cast<std::size_t>(begin / kFinest);
+        const auto last = static_cast<std::size_t>((begin + zone.width) / kFinest);
+        for (std::size_t step = first; step < last; ++step) of_step[step] = static_cast<std::uint8_t>(bin);
+      }
+  }
+
+  /// The last bin holds all beyond it.
+  std::uint32_t find(float range) const
+  {
+    const auto step = static_cast<std::uint32_t>(range / kFinest);
+    return of_step[std::min<std::size_t>(step, of_step.size() - 1)];
+  }
+};
+
+const Bins kGrid;
+
+/// By the angle of the square that turns with x and y instead of the circle's: no trigonometry.
+std::uint32_t sectorOf(float x, float y)
+{
+  const float turn = y / (std::abs(x) + std::abs(y));            // -1..1
+  const float quarters = x >= 0.0F ? 1.0F + turn : 3.0F - turn;  // 0..4
+  return std::min(kSectors - 1, static_cast<std::uint32_t>(quarters * (0.25F * kSectors)));
+}
+}  // namespace
+
+GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), distance_(kCells), unseen_(kCells) {}
+
+bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<float>& height)
+{
+  sortIntoCells(cloud, max_range_m);
+  const bool found = findPlane();
+  if (found)
+  {
+    follow(max_slope);
+    bridge();
+  }
+  else
+  {
+    std::fill(ground_.begin(), ground_.end(), 0.0F);
+    std::copy(kGrid.middle.begin(), kGrid.middle.end(), distance_.begin());
+    for (std::uint32_t s = 1; s < kSectors; ++s)
+      std::copy(kGrid.middle.begin(), kGrid.middle.end(), distance_.begin() + s * kBins);
+  }
+  writeHeights(cloud, height);
+  return found;
+}
+
+void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m)
+{
+  const float max_squared_range = max_range_m * max_range_m;
+  lowest_.assign(kCells, {0.0F, 0.0F, kFar});
+  cell_of_.resize(cloud.points.size());
+  range_of_.resize(cloud.points.size());
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+  {
+    const LabelledPoint& p = cloud.points[i];
+    const float squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
+    cell_of_[i] = kNoCell;
+    if (!(squared > 0.0F && whole <= max_squared_range)) continue;  // NaN and infinity too
+    range_of_[i] = std::sqrt(squared);
+    const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(range_of_[i]);
+    cell_of_[i] = static_cast<std::uint16_t>(cell);
+    if (p.z < lowest_[cell].z) lowest_[cell] = {p.x, p.y, p.z};
+  }
+}
+
+bool GroundSurface::findPlane()
+{
+  constexpr float kReach = 20.0F;      // [m]
+  constexpr std::size_t kFewest = 10;  // cells
+  constexpr float kGates[] = {0.5F, 0.3F, 0.2F, 0.2F};
+  plane_ = {};
+  near_.clear();
+  float bottom = kFar;
+  for (std::uint32_t cell = 0; cell < kCells; ++cell)
+  {
+    if (lowest_[cell].z == kFar) continue;
+    bottom = std::min(bottom, lowest_[cell].z);
+    if (kGrid.middle[cell % kBins] < kReach) near_.push_back(lowest_[cell]);
+  }
+  std::size_t on_plane = 0;
+  if (near_.size() >= kFewest)
+  {
+    votePlane();
+    for (const float gate : kGates) on_plane = fitPlane(gate);
+  }
+  if (on_plane >= std::max(kFewest, near_.size() / 10)) return true;
+  plane_ = {0.0F, 0.0F, bottom};
+  return false;
+}
+
+/// The slopes and offset that most of the cells agree on, coarsely.
+void GroundSurface::votePlane()
+{
+  constexpr int kSlopes = 6;  // either side, two degrees each
+  constexpr float kSlopeStep = 0.035F, kOffsetStep = 0.25F;
+  constexpr std::size_t kOffsets = 48;  // down to 12 m below the sensor
+  constexpr std::size_t kVoters = 600;
+  const std::size_t stride = 1 + near_.size() / kVoters;
+  int most = -1;
+  for (int v = -kSlopes; v <= kSlopes; ++v)
+    for (int u = -kSlopes; u <= kSlopes; ++u)
+    {
+      const SlopedPlane plane{kSlopeStep * static_cast<float>(u), kSlopeStep * static_cast<float>(v), 0.0F};
+      std::array<int, kOffsets + 1> votes{};
+      for (std::size_t i = 0; i < near_.size(); i += stride)
+      {
+        const float below = -plane.heightOf(near_[i].x, near_[i].y, near_[i].z) / kOffsetStep;
+        if (below > 0.0F && below < kOffsets) ++votes[static_cast<std::size_t>(below)];
+      }
+      for (std::size_t k = 0; k < kOffsets; ++k)
+        if (votes[k] + votes[k + 1] > most)
+        {
+          most = votes[k] + votes[k + 1];
+          plane_ = {plane.slope_x, plane.slope_y, -kOffsetStep * static_cast<float>(k + 1)};
+        }
+    }
+}
+
+/// Least squares through the cells within `gate` of the plane so far; returns how many there are.
+std::size_t GroundSurface::fitPlane(float gate)
+{
+  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
+  Eigen::Vector3d right = Eigen::Vector3d::Zero();
+  std::size_t count = 0;
+  for (const Low& low : near_)
+  {
+    if (std::abs(plane_.heightOf(low.x, low.y, low.z)) > gate) continue;
+    const Eigen::Vector3d row(low.x, low.y, 1.0);
+    normal += row * row.transpose();
+    right += row * static_cast<double>(low.z);
+    ++count;
+  }
+  // a ridge of a millimetre a metre: what the cells do not tell, such as the slope across a single row, stays level
+  normal.diagonal() += Eigen::Vector3d(1e-3, 1e-3, 1e-9);
+  const Eigen::Vector3f solution = normal.ldlt().solve(right).cast<float>();
+  plane_ = {solution.x(), solution.y(), solution.z()};
+  return count;
+}
+
+void GroundSurface::follow(float max_slope)
+{
+  constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
+  constexpr float kMostStep = 0.5F;  // [m] below a bumper
+  for (std::uint32_t sector = 0; sector < kSectors; ++sector)
+  {
+    const std::uint32_t cell = sector * kBins;
+    ground_[cell] = 0.0F, distance_[cell] = kGrid.middle[0], unseen_[cell] = kGrid.middle[0];
+  }
+  for (std::uint32_t bin = 1; bin < kBins; ++bin)
+  {
+    const float step = kGrid.middle[bin] - kGrid.middle[bin - 1];
+    for (std::uint32_t sector = 0; sector < kSectors; ++sector)
+    {
+      const std::uint32_t inside[] = {sector * kBins + bin - 1, (sector + 1) % kSectors * kBins + bin - 1,
+                                      (sector + kSectors - 1) % kSectors * kBins + bin - 1};
+      float weights = 0.0F, expected = 0.0F, unseen = kFar;
+      for (const std::uint32_t neighbour : inside)
+      {
+        const float weight = 1.0F / (1.0F + unseen_[neighbour]);
+        weights += weight, expected += weight * ground_[neighbour];
+        unseen = std::min(unseen, unseen_[neighbour]);
+      }
+      expected /= weights;
+
+      const std::uint32_t cell = sector * kBins + bin;
+      const Low& low = lowest_[cell];
+      const float found = plane_.heightOf(low.x, low.y, low.z);
+      const float gate = std::min(kMostStep, kNoise + max_slope * (unseen + step));
+      const bool seen = std::abs(found - expected) < gate;  // false for a cell without returns
+      ground_[cell] = seen ? found : expected;
+      distance_[cell] = seen ? std::hypot(low.x, low.y) : kGrid.middle[bin];
+      unseen_[cell] = seen ? 0.0F : unseen + step;
+    }
+  }
+}
+
+void GroundSurface::bridge()
+{
+  for (std::uint32_t sector = 0; sector < kSectors; ++sector)
+  {
+    const std::uint32_t begin = sector * kBins;
+    std::uint32_t inner = begin;
+    for (std::uint32_t outer = begin + 1; outer < begin + kBins; ++outer)
+    {
+      if (unseen_[outer] > 0.0F) continue;
+      const float rise = (ground_[outer] - ground_[inner]) / (distance_[outer] - distance_[inner]);
+      for (std::uint32_t cell = inner + 1; cell < outer; ++cell)
+        ground_[cell] = ground_[inner] + rise * (distance_[cell] - distance_[inner]);
+      inner = outer;
+    }
+  }
+}
+
+void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<float>& height) const
+{
+  height.resize(cloud.points.size());
+  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+  {
+    if (cell_of_[i] == kNoCell)
+    {
+      height[i] = kNaN;
+      continue;
+    }
+    const LabelledPoint& p = cloud.points[i];
+    const std::uint32_t cell = cell_of_[i], bin = cell % kBins;
+    std::uint32_t a = cell, b = cell;
+    if (range_of_[i] < distance_[cell])
+      a -= bin > 0 ? 1 : 0;
+    else
+      b += bin + 1 < kBins ? 1 : 0;
+    const float between = distance_[b] - distance_[a];
+    const float share = between > 0.0F ? std::clamp((range_of_[i] - distance_[a]) / between, 0.0F, 1.0F) : 0.0F;
+    const float ground = ground_[a] + share * (ground_[b] - ground_[a]);
+    height[i] = plane_.heightOf(p.x, p.y, p.z) - ground;
+  }
+}
+}  // namespace lidar_panoptic_clustering
