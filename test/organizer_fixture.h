@@ -7,6 +7,7 @@
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
 
 #include <pcl_ros/point_cloud.h>
+#include <ros/topic_manager.h>
 #include <sensor_msgs/Image.h>
 #include <sensor_msgs/image_encodings.h>
 
@@ -20,6 +21,12 @@
 namespace lidar_panoptic_clustering
 {
 inline const ros::Time kSceneStamp(1700000000, 123456000);
+
+/// Waits until somebody listens to a topic that a nodelet of this process publishes.
+inline void waitForListener(const std::string& topic)
+{
+  EXPECT_TRUE(eventually([&] { return ros::TopicManager::instance()->getNumSubscribers(topic) > 0; })) << topic;
+}
 
 /// An organizer between publishers and probes of the test.
 class OrganizerGraph : public Graph

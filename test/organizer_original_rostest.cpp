@@ -25,6 +25,8 @@ protected:
     original_ = std::make_unique<Probe<sensor_msgs::PointCloud2>>(name_ + "/output_original");
     waitForSubscriber(input_);
     if (labels_) waitForSubscriber(labels_);
+    waitForListener(clusterer_ + "/output");
+    waitForListener(name_ + "/output");
   }
 
   /// An organizer whose instances come from the test.
@@ -228,8 +230,10 @@ TEST_F(OriginalGraph, InstancesFindTheirCloudByStampWhereOthersWereLeftOut)
   startAlone();
   LabelledCloud scene = twoCars(2.0F);
   for (int frame = 0; frame < 4; ++frame)
+  {
     input_.publish(toRosMessage(laidOut(scene, kPlainLayout), "lidar", ros::Time(100 + frame)));
-  diagnostics_->waitFor("scans processed", "4");
+    diagnostics_->waitFor("scans processed", std::to_string(frame + 1));
+  }
   const auto answer = [&](int frame)
   {
     scene.header.stamp = (100 + frame) * 1000000ULL;
