@@ -44,11 +44,37 @@ RawMessage syntheticScan(std::uint32_t rings, std::uint32_t firings, NumberType 
   return message;
 }
 
+OrganizedScan scanOf(const RawMessage& message, const OrganizerConfig& config = {})
+{
+  OrganizedScan scan;
+  Organizer(config).organize(message.view(), scan);
+  return scan;
+}
+
 LabelledCloud organize(const RawMessage& message, const OrganizerConfig& config = {})
 {
-  LabelledCloud cloud;
-  Organizer(config).organize(message.view(), cloud);
-  return cloud;
+  return scanOf(message, config).image.cloud;
+}
+
+LayoutProbe probe(const RawMessage& message, const std::string& ring_field = "")
+{
+  const RawCloud raw = message.view();
+  LayoutProbe result;
+  result.look(raw, findScanFields(raw, {"", "", ring_field}, false));
+  return result;
+}
+
+std::optional<Orientation> orientationOf(const RawMessage& message)
+{
+  return probe(message).orientation();
+}
+
+/// The same scan without the ring's number.
+RawMessage withoutRing(RawMessage message)
+{
+  for (auto& field : message.header.fields)
+    if (field.name == "ring") field.name = "beam";
+  return message;
 }
 
 /// Equal, where no return equals no return.
@@ -104,7 +130,7 @@ TEST(Organizer, OrientationCanBeSet)
   EXPECT_EQ(organize(transposed(scan), config).height, 90U);
   config.orientation = "sideways";
   EXPECT_EQ(errorOf([&] { Organizer organizer(config); }),
-            "orientation: expected one of auto, rows_are_rings, rows_are_firings, found 'sideways'");
+            "parameter 'orientation': expected one of 'auto' 'rows_are_rings' 'rows_are_firings', got 'sideways'");
 }
 
 /// All points at one elevation, so that only the ring tells.
@@ -113,9 +139,9 @@ TEST(Organizer, RingDecidesWhereGeometryCannot)
   auto scan = syntheticScan(16, 16, kF32, true);
   for (unsigned r = 0; r < 16; ++r)
     for (unsigned c = 0; c < 16; ++c) scan.setPoint(r, c, 1.0 + r, 1.0 + c, 0.0);
-  EXPECT_EQ(detectOrientation(scan.view(), "ring"), Orientation::kRowsAreRings);
-  EXPECT_EQ(detectOrientation(transposed(scan).view(), "ring"), Orientation::kRowsAreFirings);
-  EXPECT_EQ(detectOrientation(scan.view(), "no such field"), std::nullopt);
+  EXPECT_EQ(orientationOf(scan), Orientation::kRowsAreRings);
+  EXPECT_EQ(orientationOf(transposed(scan)), Orientation::kRowsAreFirings);
+  EXPECT_EQ(orientationOf(withoutRing(scan)), std::nullopt);
 }
 
 TEST(Organizer, GeometryDecidesWhereRingIsTheSameEverywhere)
@@ -123,8 +149,8 @@ TEST(Organizer, GeometryDecidesWhereRingIsTheSameEverywhere)
   auto scan = syntheticScan(16, 90, kF32, true);
   for (unsigned r = 0; r < 16; ++r)
     for (unsigned c = 0; c < 90; ++c) scan.set(r, c, "ring", 0);
-  EXPECT_EQ(detectOrientation(scan.view(), "ring"), Orientation::kRowsAreRings);
-  EXPECT_EQ(detectOrientation(transposed(scan).view(), "ring"), Orientation::kRowsAreFirings);
+  EXPECT_EQ(orientationOf(scan), Orientation::kRowsAreRings);
+  EXPECT_EQ(orientationOf(transposed(scan)), Orientation::kRowsAreFirings);
 }
 
 TEST(Organizer, FewReturnsAmongManyPixelsDecide)
@@ -133,8 +159,8 @@ TEST(Organizer, FewReturnsAmongManyPixelsDecide)
   for (unsigned r = 0; r < 64; ++r)
     for (unsigned c = 0; c < 1024; ++c)
       if (r < 20 || r > 28 || c < 500 || c > 508) scan.setPoint(r, c, kNaN, kNaN, kNaN);
-  EXPECT_EQ(detectOrientation(scan.view(), "ring"), Orientation::kRowsAreRings);
-  EXPECT_EQ(detectOrientation(transposed(scan).view(), "ring"), Orientation::kRowsAreFirings);
+  EXPECT_EQ(orientationOf(scan), Orientation::kRowsAreRings);
+  EXPECT_EQ(orientationOf(transposed(scan)), Orientation::kRowsAreFirings);
 }
 
 TEST(Organizer, UndecidedScansFollowTheLastOneElseTheShape)
@@ -143,16 +169,16 @@ TEST(Organizer, UndecidedScansFollowTheLastOneElseTheShape)
   auto blind = sector;
   for (unsigned r = 0; r < 64; ++r)
     for (unsigned c = 0; c < 20; ++c) blind.setPoint(r, c, 0, 0, 0);
-  EXPECT_EQ(detectOrientation(blind.view(), "ring"), std::nullopt);
+  EXPECT_EQ(orientationOf(blind), std::nullopt);
 
   Organizer organizer{OrganizerConfig()};
-  LabelledCloud cloud;
-  organizer.organize(blind.view(), cloud);
-  EXPECT_EQ(cloud.height, 20U);
-  organizer.organize(sector.view(), cloud);
-  EXPECT_EQ(cloud.height, 64U);
-  organizer.organize(blind.view(), cloud);
-  EXPECT_EQ(cloud.height, 64U);
+  OrganizedScan scan;
+  organizer.organize(blind.view(), scan);
+  EXPECT_EQ(scan.image.cloud.height, 20U);
+  organizer.organize(sector.view(), scan);
+  EXPECT_EQ(scan.image.cloud.height, 64U);
+  organizer.organize(blind.view(), scan);
+  EXPECT_EQ(scan.image.cloud.height, 64U);
 }
 
 TEST(Organizer, NoReturnsBecomeNaN)
@@ -186,21 +212,39 @@ TEST(Organizer, NoReturnsBecomeNaN)
 TEST(Organizer, FieldsHaveConfigurableNames)
 {
   auto scan = syntheticScan(16, 90);
-  scan.header.fields[3].name = "reflectivity";
-  scan.header.fields[4].name = "class_id";
+  scan.header.fields[3].name = "gain";
+  scan.header.fields[4].name = "kind";
   OrganizerConfig config;
-  config.label_field = "class_id";
+  config.label_field = "kind";
   EXPECT_EQ(organize(scan, config).at(3, 2).label, 203U);
   EXPECT_EQ(organize(scan, config).at(3, 2).intensity, 0.0F);
-  config.intensity_field = "reflectivity";
+  config.intensity_field = "gain";
   EXPECT_EQ(organize(scan, config).at(3, 2).intensity, 0.75F);
+  config.ring_field = "beam";
+  EXPECT_EQ(errorOf([&] { organize(scan, config); }),
+            "expected a field 'beam' with ring numbers (named by the parameter ring_field), found x float32, y "
+            "float32, z float32, gain float32, kind uint16");
+}
+
+TEST(Organizer, FieldsAreFoundByTheirUsualNames)
+{
+  for (const char* label : {"label", "class_id", "semantic", "class"})
+    for (const char* intensity : {"intensity", "reflectivity", "remission"})
+    {
+      auto scan = syntheticScan(16, 90);
+      scan.header.fields[3].name = intensity;
+      scan.header.fields[4].name = label;
+      EXPECT_EQ(organize(scan).at(3, 2).label, 203U) << label;
+      EXPECT_EQ(organize(scan).at(3, 2).intensity, 0.75F) << intensity;
+    }
 }
 
 TEST(Organizer, ParametersAreListed)
 {
   std::vector<std::string> names;
   for (const auto& info : describeParameters(OrganizerConfig{})) names.push_back(info.name);
-  EXPECT_EQ(names, (std::vector<std::string>{"orientation", "label_field", "intensity_field", "ring_field"}));
+  EXPECT_EQ(names, (std::vector<std::string>{"layout", "orientation", "sensor", "columns", "label_field",
+                                             "intensity_field", "ring_field"}));
 
   OrganizerConfig config;
   applyParameters(config, {{"orientation", std::string("rows_are_firings")}, {"label_field", std::string("class_id")}});
@@ -209,27 +253,22 @@ TEST(Organizer, ParametersAreListed)
   EXPECT_NE(errorOf([&] { applyParameters(config, {{"orientation", std::string("sideways")}}); }), "");
 }
 
-TEST(Organizer, RefusesOneRowAndSaysWhatToSwitchOn)
-{
-  const auto error = errorOf([] { organize(syntheticScan(1, 90)); });
-  EXPECT_EQ(error,
-            "expected an organised cloud (rows and columns), found one row of 90 points: switch on organised output in "
-            "the driver (velodyne_pointcloud: organize_cloud:=true)");
-}
-
 TEST(Organizer, RefusesCloudsWithoutLabels)
 {
   auto scan = syntheticScan(16, 90);
   scan.header.fields.pop_back();
   EXPECT_EQ(errorOf([&] { organize(scan); }),
-            "expected a field 'label' with class ids (named by the parameter label_field), found x float32, y float32, "
-            "z float32, intensity float32");
+            "expected a field 'label', 'class_id', 'semantic', 'class' or one named by the parameter label_field, with "
+            "class ids, found x float32, y float32, z float32, intensity float32");
+  OrganizerConfig config;
+  config.labels = false;
+  EXPECT_EQ(organize(scan, config).at(3, 2).label, 0U);
 }
 
 TEST(Organizer, LivesOnAfterABadCloud)
 {
   Organizer organizer{OrganizerConfig()};
-  LabelledCloud cloud;
+  OrganizedScan cloud;
   const auto good = syntheticScan(16, 90);
   auto bad = good;
   bad.bytes.pop_back();
@@ -239,7 +278,7 @@ TEST(Organizer, LivesOnAfterABadCloud)
   bad.header.fields[0].offset = 17;
   EXPECT_NE(errorOf([&] { organizer.organize(bad.view(), cloud); }), "");
   organizer.organize(good.view(), cloud);
-  expectSame(cloud, organize(good));
+  expectSame(cloud.image.cloud, organize(good));
 }
 
 TEST(Organizer, SmallestClouds)
@@ -249,8 +288,11 @@ TEST(Organizer, SmallestClouds)
   EXPECT_EQ(organize(transposed(scan)).points.size(), 0U);
   EXPECT_EQ(organize(syntheticScan(1, 1)).points.size(), 1U);
   EXPECT_EQ(organize(syntheticScan(2, 1)).points.size(), 2U);
-  const auto column = organize(syntheticScan(90, 1));
-  EXPECT_EQ(column.points.size(), 90U);
+  OrganizerConfig config;
+  config.orientation = "rows_are_rings";
+  EXPECT_EQ(organize(syntheticScan(90, 1), config).height, 90U) << "a single firing";
+  EXPECT_EQ(organize(syntheticScan(1, 90)).width, 90U) << "a sensor of one scan line";
+  EXPECT_EQ(organize(transposed(syntheticScan(1, 90))).width, 90U);
 }
 
 /// A recorded cloud with a label added: its pixel's number, modulo 251.
@@ -279,10 +321,10 @@ TEST(OrganizerRecorded, FindsTheOrientationOfDriversClouds)
   {
     const auto scan = recordedScan(folder + "/" + name);
     const auto turned = transposed(scan);
-    for (const char* ring_field : {"ring", "no such field"})
+    for (const bool with_ring : {true, false})
     {
-      EXPECT_EQ(detectOrientation(scan.view(), ring_field), Orientation::kRowsAreRings) << name;
-      EXPECT_EQ(detectOrientation(turned.view(), ring_field), Orientation::kRowsAreFirings) << name;
+      EXPECT_EQ(orientationOf(with_ring ? scan : withoutRing(scan)), Orientation::kRowsAreRings) << name;
+      EXPECT_EQ(orientationOf(with_ring ? turned : withoutRing(turned)), Orientation::kRowsAreFirings) << name;
     }
     const auto cloud = organize(scan);
     EXPECT_EQ(cloud.height, scan.header.height) << name;

@@ -1,6 +1,10 @@
 #include "lidar_panoptic_clustering/core/frame_pipeline.h"
 
+#include "lidar_panoptic_clustering/core/one_sweep.h"
+
 #include <chrono>
+#include <stdexcept>
+#include <string>
 #include <utility>
 
 namespace lidar_panoptic_clustering
@@ -21,6 +25,14 @@ private:
   using Clock = std::chrono::steady_clock;
   Clock::time_point start_ = Clock::now();
 };
+
+[[noreturn]] void throwNoScanLines(std::size_t points)
+{
+  throw std::invalid_argument("expected scan lines (rows of an organised cloud), found one row of " +
+                              std::to_string(points) +
+                              " points that do not come in one sweep, as of several lidars merged: use an algorithm "
+                              "that works on points alone (birds_eye, euclidean, supervoxel)");
+}
 }  // namespace
 
 FramePipeline::FramePipeline(std::shared_ptr<const ClassTable> table, const PipelineConfig& config,
@@ -44,6 +56,7 @@ void FramePipeline::reconfigure(const PipelineConfig& config, std::unique_ptr<Cl
 void FramePipeline::segment(const LabelledCloud& in)
 {
   Stopwatch stopwatch;
+  if (in.height == 1 && clusterer_->needsScanLines() && !comesInOneSweep(in)) throwNoScanLines(in.size());
   selectThings(in, *table_, selection_, things_);
   times_.select_ms = stopwatch.lap();
 

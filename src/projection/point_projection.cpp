@@ -12,7 +12,6 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-constexpr float kInfinity = std::numeric_limits<float>::infinity();
 constexpr float kPi = 3.14159265358979F;
 
 LabelledPoint noReturn()
@@ -21,7 +20,77 @@ LabelledPoint noReturn()
   point.x = point.y = point.z = std::numeric_limits<float>::quiet_NaN();
   return point;
 }
+
+float squaredRange(const ScanPoint& p)
+{
+  return p.x * p.x + p.y * p.y + p.z * p.z;
+}
+
+void locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
+            Projection& out)
+{
+  const float columns_per_radian = static_cast<float>(columns) / (2.0F * kPi);
+  std::uint32_t pixel = columns / 2;
+  for (std::uint32_t i = 0; i < scan.size(); ++i)
+  {
+    const auto [azimuth, row] = directions[i];
+    if (azimuth == azimuth)  // false for NaN
+    {
+      // azimuth -pi is the same direction as +pi, which is column 0
+      const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian));
+      pixel = row * columns + (column < columns ? column : 0);
+      std::uint32_t& owner = out.owner_of_pixel[pixel];
+      if (owner == Projection::kNone || squaredRange(scan[i]) < squaredRange(scan[owner])) owner = i;
+    }
+    out.pixel_of_point[i] = pixel;
+    ++out.begin[pixel];
+  }
+}
+
+void listPoints(Projection& out)
+{
+  std::uint32_t end = 0;
+  for (auto& entry : out.begin) entry = end += entry;
+  out.points.resize(out.pixel_of_point.size());
+  // from the last point to the first, each list fills from its end, and `begin` becomes what its name says
+  for (auto i = static_cast<std::uint32_t>(out.points.size()); i-- > 0;)
+    out.points[--out.begin[out.pixel_of_point[i]]] = i;
+}
+
+void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, std::uint32_t class_bits,
+           Projection& out)
+{
+  const LabelledPoint empty = noReturn();
+  for (std::size_t pixel = 0; pixel < out.owner_of_pixel.size(); ++pixel)
+  {
+    auto& to = out.cloud.points[pixel];
+    to = empty;
+    const std::uint32_t owner = out.owner_of_pixel[pixel];
+    if (owner == Projection::kNone) continue;
+    const auto& from = scan[owner];
+    to.x = from.x, to.y = from.y, to.z = from.z;
+    to.intensity = from.remission;
+    if (!labels.empty()) to.label = labels[owner] & class_bits;
+  }
+}
 }  // namespace
+
+void projectDirections(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
+                       const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
+                       std::uint32_t class_bits, Projection& out)
+{
+  const std::size_t pixels = std::size_t{rows} * columns;
+  out.pixel_of_point.resize(scan.size());
+  out.owner_of_pixel.assign(pixels, Projection::kNone);
+  out.begin.assign(pixels + 1, 0);
+  out.cloud.points.resize(pixels);
+  out.cloud.width = columns;
+  out.cloud.height = rows;
+  out.cloud.is_dense = false;
+  locate(scan, directions, columns, out);
+  listPoints(out);
+  paint(scan, labels, class_bits, out);
+}
 
 PointProjector::PointProjector(const ProjectionConfig& config)
     : rows_(static_cast<std::uint32_t>(config.rows)), columns_(static_cast<std::uint32_t>(config.columns))
@@ -35,80 +104,26 @@ void PointProjector::project(const std::vector<ScanPoint>& scan, const std::vect
   if (!labels.empty() && labels.size() != scan.size())
     throw std::invalid_argument("expected one label a point, found " + std::to_string(labels.size()) + " labels for " +
                                 std::to_string(scan.size()) + " points");
-  locate(scan, out);
-  listPoints(out);
-  paint(scan, labels, out);
+  out.rings = unfoldScan(scan, directions_);
+  for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rows_ - 1);
+  projectDirections(scan, labels, directions_, rows_, columns_, 0xFFFFU, out);
 }
 
-void PointProjector::locate(const std::vector<ScanPoint>& scan, Projection& out)
+std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, std::vector<PointDirection>& directions)
 {
-  const std::size_t pixels = std::size_t{rows_} * columns_;
-  out.pixel_of_point.resize(scan.size());
-  out.owner_of_pixel.assign(pixels, Projection::kNone);
-  out.begin.assign(pixels + 1, 0);
-  nearest_.assign(columns_, kInfinity);
-
   RingCounter rings;
-  const float columns_per_radian = static_cast<float>(columns_) / (2.0F * kPi);
-  const std::uint32_t last_row = rows_ - 1;
-  std::uint32_t ring = 0, row_begin = 0, pixel = columns_ / 2;
-  for (std::uint32_t i = 0; i < scan.size(); ++i)
+  std::uint32_t ring = 0;
+  directions.resize(scan.size());
+  for (std::size_t i = 0; i < scan.size(); ++i)
   {
-    const auto& p = scan[i];
-    const float squared_range = p.x * p.x + p.y * p.y + p.z * p.z;
-    if (squared_range > 0.0F && squared_range < kInfinity)  // false for NaN
+    float azimuth = std::numeric_limits<float>::quiet_NaN();
+    if (hasDirection(scan[i]))
     {
-      const float azimuth = fastAzimuth(p.x, p.y);
-      if (const std::uint32_t next = rings.next(azimuth); next != ring)
-      {
-        ring = next;
-        if (ring <= last_row) nearest_.assign(columns_, kInfinity);
-        row_begin = std::min(ring, last_row) * columns_;
-      }
-      // azimuth -pi is the same direction as +pi, which is column 0
-      const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian));
-      const std::uint32_t in_row = column < columns_ ? column : 0;
-      pixel = row_begin + in_row;
-      if (squared_range < nearest_[in_row])
-      {
-        nearest_[in_row] = squared_range;
-        out.owner_of_pixel[pixel] = i;
-      }
+      azimuth = fastAzimuth(scan[i].x, scan[i].y);
+      ring = rings.next(azimuth);
     }
-    out.pixel_of_point[i] = pixel;
-    ++out.begin[pixel];
+    directions[i] = {azimuth, ring};
   }
-  out.rings = scan.empty() ? 0 : ring + 1;
-}
-
-void PointProjector::listPoints(Projection& out)
-{
-  std::uint32_t end = 0;
-  for (auto& entry : out.begin) entry = end += entry;
-  out.points.resize(out.pixel_of_point.size());
-  // from the last point to the first, each list fills from its end, and `begin` becomes what its name says
-  for (auto i = static_cast<std::uint32_t>(out.points.size()); i-- > 0;)
-    out.points[--out.begin[out.pixel_of_point[i]]] = i;
-}
-
-void PointProjector::paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-                           Projection& out) const
-{
-  const LabelledPoint empty = noReturn();
-  out.cloud.points.resize(out.owner_of_pixel.size());
-  out.cloud.width = columns_;
-  out.cloud.height = rows_;
-  out.cloud.is_dense = false;
-  for (std::size_t pixel = 0; pixel < out.owner_of_pixel.size(); ++pixel)
-  {
-    auto& to = out.cloud.points[pixel];
-    to = empty;
-    const std::uint32_t owner = out.owner_of_pixel[pixel];
-    if (owner == Projection::kNone) continue;
-    const auto& from = scan[owner];
-    to.x = from.x, to.y = from.y, to.z = from.z;
-    to.intensity = from.remission;
-    if (!labels.empty()) to.label = labels[owner] & 0xFFFFU;
-  }
+  return scan.empty() ? 0 : ring + 1;
 }
 }  // namespace lidar_panoptic_clustering

@@ -39,6 +39,7 @@ public:
   explicit DepthClusterer(const DepthConfig& config = {});
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+  bool needsScanLines() const override { return true; }
 
 private:
   /// A point to look back at, and its position along the line of search.

@@ -42,6 +42,7 @@ public:
   explicit ScanLineRunClusterer(const ScanLineRunConfig& config = {});
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
+  bool needsScanLines() const override { return true; }
 
 private:
   struct Point

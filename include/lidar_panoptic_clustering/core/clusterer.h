@@ -18,5 +18,9 @@ public:
   /// Gives every thing point a component: resized to scan.size(), each value below scan.size(), two points have the
   /// same value exactly when they belong to the same object. The values' order means nothing.
   virtual void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) = 0;
+
+  /// Whether the rule goes by rows and columns, so that it makes no sense on one row of points in any order, as of
+  /// several lidars merged into one cloud.
+  virtual bool needsScanLines() const { return false; }
 };
 }  // namespace lidar_panoptic_clustering

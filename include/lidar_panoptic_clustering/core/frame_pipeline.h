@@ -40,7 +40,7 @@ public:
   void reconfigure(const PipelineConfig& config, std::unique_ptr<Clusterer> clusterer);
 
   /// Select, cluster, refine: finds the instances of a scan. Throws std::invalid_argument when the cloud's size
-  /// contradicts its points.
+  /// contradicts its points, and when the clusterer needs scan lines and gets one row of points that is none.
   void segment(const LabelledCloud& in);
 
   /// Fills `out` with the points of `in`, the cloud given to segment() last, in the same order, with instance ids and

@@ -49,6 +49,34 @@ struct Projection
   std::uint32_t rings = 0;  ///< found in the scan, however many rows there are
 };
 
+/// Where a point goes. The azimuth is NaN where there is no return.
+struct PointDirection
+{
+  float azimuth;  ///< [rad], in [-pi, pi]
+  std::uint32_t row;
+};
+
+/// Whether a point can be projected: finite, not (0, 0, 0), and near enough to square its range.
+inline bool hasDirection(const ScanPoint& p)
+{
+  const float squared_range = p.x * p.x + p.y * p.y + p.z * p.z;
+  return squared_range > 0.0F && squared_range < std::numeric_limits<float>::infinity();  // false for NaN
+}
+
+/// Projects points whose rows are known; the column is the azimuth's. The nearest point owns the pixel, the first of
+/// equals. A point without a return stands in its predecessor's pixel, in any order of points, and owns none.
+///
+/// `directions`: one a point, rows below `rows`; `labels`: one a point, or empty for none (0); `class_bits`: the bits
+/// of a label that are its class. All but `rings` of `out` is filled. Linear in points and pixels; allocates only while
+/// buffers grow.
+void projectDirections(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
+                       const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
+                       std::uint32_t class_bits, Projection& out);
+
+/// The direction of each point of a scan whose points come ring after ring (see RingCounter): the row is its ring,
+/// from 0. A point without a return has its predecessor's ring. Returns the number of rings. Linear.
+std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, std::vector<PointDirection>& directions);
+
 /// Projects scans whose points come ring after ring (see RingCounter); buffers are kept between scans.
 class PointProjector
 {
@@ -67,11 +95,7 @@ public:
   void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, Projection& out);
 
 private:
-  void locate(const std::vector<ScanPoint>& scan, Projection& out);
-  void listPoints(Projection& out);
-  void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, Projection& out) const;
-
   std::uint32_t rows_, columns_;
-  std::vector<float> nearest_;  ///< squared range of the owners in the row being filled [m^2], by column
+  std::vector<PointDirection> directions_;
 };
 }  // namespace lidar_panoptic_clustering
