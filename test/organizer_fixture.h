@@ -3,8 +3,7 @@
 #include "graph_fixture.h"
 #include "labelled_scene.h"
 #include "nodelets/cloud_subscription.h"
-
-#include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
+#include "unordered_clouds.h"
 
 #include <pcl_ros/point_cloud.h>
 #include <ros/topic_manager.h>
@@ -67,11 +66,6 @@ protected:
   std::unique_ptr<Probe<LabelledCloud>> output_;
 };
 
-inline bool isReturn(const LabelledPoint& p)
-{
-  return std::isfinite(p.x) && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F);
-}
-
 /// The pixels of `scene` in the organizer's cloud: same coordinates, NaN for what is no return, and at the returns the
 /// same labels.
 inline void expectScene(const LabelledCloud& cloud, const LabelledCloud& scene = labelledScene())
@@ -82,28 +76,13 @@ inline void expectScene(const LabelledCloud& cloud, const LabelledCloud& scene =
   for (std::size_t i = 0; i < scene.points.size(); ++i)
   {
     const auto &found = cloud.points[i], &sent = scene.points[i];
-    ASSERT_EQ(std::isnan(found.x), !isReturn(sent)) << i;
-    if (!isReturn(sent)) continue;
+    ASSERT_EQ(std::isnan(found.x), !hasReturn(sent)) << i;
+    if (!hasReturn(sent)) continue;
     ASSERT_EQ(found.label, sent.label) << i;
     ASSERT_EQ(found.x, sent.x) << i;
     ASSERT_EQ(found.y, sent.y) << i;
     ASSERT_EQ(found.z, sent.z) << i;
   }
-}
-
-/// A scan of 64 x 2048 with true classes.
-inline LabelledCloud simulatedStreet(std::uint64_t frame = 0)
-{
-  PanopticCloud truth;
-  LidarSimulator().scan(frame, truth);
-  LabelledCloud cloud(truth.width, truth.height);
-  for (std::size_t i = 0; i < truth.size(); ++i)
-  {
-    const PanopticPoint& from = truth.points[i];
-    cloud.points[i] = labelled(from.x, from.y, from.z, from.label);
-  }
-  cloud.header.frame_id = "lidar";
-  return cloud;
 }
 
 /// The scene as a driver sends it that knows no classes: x, y, z, ring.

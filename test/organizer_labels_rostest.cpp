@@ -269,7 +269,7 @@ TEST_F(NoLabels, ObjectsComeFromTheGeometry)
   Probe<PanopticCloud> panoptic(clusterer + "/output");
   start("none");
 
-  const LabelledCloud truth = simulatedStreet();
+  const LabelledCloud truth = simulatedScan("hdl64e");
   input_.publish(toRosMessage(withoutLabels(truth)));
   const auto out = panoptic.next();
   ASSERT_TRUE(out);
@@ -277,7 +277,7 @@ TEST_F(NoLabels, ObjectsComeFromTheGeometry)
   std::size_t road = 0, road_as_ground = 0, cars = 0, cars_as_objects = 0;
   for (std::size_t i = 0; i < truth.size(); ++i)
   {
-    if (!isReturn(truth.points[i])) continue;
+    if (!hasReturn(truth.points[i])) continue;
     const bool is_car = truth.points[i].label == kCar || truth.points[i].label == kMovingCar;
     if (truth.points[i].label == kRoad) ++road, road_as_ground += out->points[i].label == 1 ? 1 : 0;
     if (is_car) ++cars, cars_as_objects += out->points[i].instance > 0 ? 1 : 0;

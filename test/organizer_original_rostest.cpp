@@ -146,7 +146,7 @@ TEST_F(OriginalGraph, LabelsOfAnImageAndOfAnotherTableComeBackInTheTableClustere
   const auto label = idsIn(*back, "label"), instance = idsIn(*back, "instance");
   for (std::size_t i = 0; i < cars.size(); ++i)
   {
-    const bool car = isReturn(cars.points[i]);
+    const bool car = hasReturn(cars.points[i]);
     EXPECT_EQ(instance[i], !car ? 0U : i % 64 > 30 ? instance[40] : instance[20]) << i;
     EXPECT_EQ(label[i], car ? kCar : kRoad) << i;
   }
