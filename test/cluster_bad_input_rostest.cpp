@@ -35,7 +35,7 @@ const std::vector<BadMessage>& badMessages()
          m.row_step *= m.height;
          m.height = 1;
        },
-       "found height 1, width 512"},
+       "found one row of 512 points"},
       {"NoLabel", [](Message& m) { renameField(m, "label", "class"); }, "expected a field 'label'"},
       {"NoZ", [](Message& m) { renameField(m, "z", "height"); }, "expected a field 'z'"},
       {"DataTooShort", [](Message& m) { m.data.resize(m.data.size() - 100); }, "bytes"},

@@ -112,9 +112,6 @@ void ClusterNodelet::work()
 
 void ClusterNodelet::process(const LabelledCloud& cloud)
 {
-  if (cloud.height == 1 && cloud.width > 1)
-    throw std::invalid_argument("expected an organised cloud, one row a scan line; found height 1, width " +
-                                std::to_string(cloud.width));
   {
     const std::lock_guard<std::mutex> lock(pending_mutex_);
     if (pending_) pipeline_->reconfigure(pending_->pipeline, std::move(pending_->clusterer));

@@ -1,25 +1,67 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/projection/organizer.h"
+#include "lidar_panoptic_clustering/projection/original_cloud.h"
+#include "lidar_panoptic_clustering/projection/original_labeller.h"
 #include "nodelets/cloud_subscription.h"
+#include "nodelets/frame_history.h"
+#include "nodelets/label_matcher.h"
 #include "nodelets/parameter_server.h"
+#include "nodelets/scan_labeller.h"
 #include "nodelets/stream_diagnostics.h"
 
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>
 #include <pluginlib/class_list_macros.hpp>
 
-#include <boost/make_shared.hpp>
+#include <chrono>
 #include <memory>
 #include <mutex>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
 
 namespace lidar_panoptic_clustering
 {
-/// ~input sensor_msgs/PointCloud2 as a driver publishes it, organised either way -> ~output organised LabelledCloud.
+namespace
+{
+struct OrganizerNodeletConfig
+{
+  OrganizerConfig organizer;
+  ScanLabellerConfig labeller;
+  LabelMatcherConfig matcher;
+  int kept_frames = 5;  ///< clouds that wait for their instances; one is clustered, the next waits for that
+
+  template <class Self, class Visitor>
+  static void visit(Self& self, Visitor&& visitor)
+  {
+    OrganizerConfig::visit(self.organizer, visitor);
+    ScanLabellerConfig::visit(self.labeller, visitor);
+    LabelMatcherConfig::visit(self.matcher, visitor);
+    visitor("kept_frames", self.kept_frames, 2, 100);
+  }
+};
+
+RawImage viewOf(const sensor_msgs::Image& image)
+{
+  return {image.width,    image.height,      image.step,       image.is_bigendian != 0,
+          image.encoding, image.data.data(), image.data.size()};
+}
+}  // namespace
+
+/// ~input sensor_msgs/PointCloud2 as a driver publishes it -> ~output organised LabelledCloud; and the cluster
+/// nodelet's output of that, on ~panoptic, -> ~output_original, the driver's cloud with a label and an instance a
+/// point.
 ///
-/// Both go by pointer inside a nodelet manager. Subscribes only while someone listens to ~output. A cloud that cannot
-/// be used is dropped, logged and shown in the diagnostics; the next one is looked at afresh.
+/// The classes come with the cloud, on ~labels as sensor_msgs/Image or as a second PointCloud2, or from the geometry,
+/// as the parameter labels says. A cloud waits until its labels come; one that more than queue_size others have
+/// overtaken, or whose successor's labels have come, is dropped and counted.
 ///
-/// Parameters: those of OrganizerConfig.
+/// Clouds go by pointer inside a nodelet manager. Subscribes only while someone listens to an output, to ~panoptic only
+/// while someone listens to ~output_original. What cannot be used is dropped, logged once in a while and shown in the
+/// diagnostics; the next one is looked at afresh.
+///
+/// Parameters: those of OrganizerNodeletConfig.
 class OrganizerNodelet : public nodelet::Nodelet
 {
 public:
@@ -32,67 +74,241 @@ public:
     // each of these waits for its callback under way; without the lock, which connect() may be waiting for
     diagnostics_.stop();
     input_.shutdown();
+    labels_.shutdown();
+    panoptic_.shutdown();
     output_.shutdown();
+    original_.shutdown();
   }
 
 private:
+  // The node handles of a nodelet without "MT" in their name call one callback at a time, so that only connect(), which
+  // onInit() may overlap, needs a lock.
+  using PanopticPtr = boost::shared_ptr<const PanopticCloud>;
+
   void onInit() override
   {
     auto& nh = getPrivateNodeHandle();
     try
     {
-      OrganizerConfig config;
-      applyParameters(config, readParameters(nh, describeParameters(config)));
-      organizer_ = std::make_unique<Organizer>(config);
+      applyParameters(config_, readParameters(nh, describeParameters(config_)));
+      config_.organizer.labels = config_.labeller.labels == "field";
+      labeller_ = std::make_unique<ScanLabeller>(config_.labeller);
+      organizer_ = std::make_unique<Organizer>(config_.organizer);
+      original_labeller_ = std::make_unique<OriginalLabeller>(labeller_->classTable());
     }
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
       throw;
     }
+    matcher_ = std::make_unique<LabelMatcher>(config_.matcher);
+    history_ = std::make_unique<FrameHistory>(static_cast<std::size_t>(config_.kept_frames));
     diagnostics_.start(getNodeHandle(), nh, getName());
 
-    // connect() may run in the manager's thread as soon as advertise() is under way: keep it out until output_ is set
+    // connect() may run in the manager's thread as soon as advertise() is under way: keep it out until both are there
     const std::lock_guard<std::mutex> lock(connect_mutex_);
     const ros::SubscriberStatusCallback status = [this](const ros::SingleSubscriberPublisher&) { connect(); };
     output_ = nh.advertise<LabelledCloud>("output", 1, status, status);
+    original_ = nh.advertise<sensor_msgs::PointCloud2>("output_original", 1, status, status);
   }
 
   void connect()
   {
     const std::lock_guard<std::mutex> lock(connect_mutex_);
     if (closed_) return;
-    if (output_.getNumSubscribers() == 0)
+    auto& nh = getPrivateNodeHandle();
+    const bool original = original_.getNumSubscribers() > 0;
+    if (!original)
+      panoptic_.shutdown();
+    else if (!panoptic_)
+      panoptic_ = subscribeChecked<PanopticCloud>(
+          nh, "panoptic", kQueue, [this](const PanopticPtr& cloud) { carryBack(*cloud); },
+          [this](const std::string& error) { refuse(error); });
+
+    if (!original && output_.getNumSubscribers() == 0)
+    {
       input_.shutdown();
+      labels_.shutdown();
+    }
     else if (!input_)
-      input_ = getPrivateNodeHandle().subscribe("input", 2, &OrganizerNodelet::receive, this,
-                                                ros::TransportHints().tcpNoDelay());
+    {
+      const auto queue = config_.labeller.separate() ? static_cast<std::uint32_t>(config_.matcher.queue_size) : kQueue;
+      const auto hints = ros::TransportHints().tcpNoDelay();
+      if (config_.labeller.labels == "image")
+        labels_ = nh.subscribe("labels", queue, &OrganizerNodelet::receiveImage, this, hints);
+      else if (config_.labeller.labels == "cloud")
+        labels_ = nh.subscribe("labels", queue, &OrganizerNodelet::receiveLabelCloud, this, hints);
+      input_ = nh.subscribe("input", queue, &OrganizerNodelet::receive, this, hints);
+    }
   }
 
-  void receive(const sensor_msgs::PointCloud2ConstPtr& message)
+  void receive(const sensor_msgs::PointCloud2ConstPtr& cloud)
   {
+    if (config_.labeller.separate())
+      match(matcher_->addCloud(cloud));
+    else
+      process(cloud, LabelPart());
+  }
+
+  void receiveImage(const sensor_msgs::ImageConstPtr& image)
+  {
+    match(matcher_->addLabels(image->header, {nullptr, image}));
+  }
+
+  void receiveLabelCloud(const sensor_msgs::PointCloud2ConstPtr& cloud)
+  {
+    match(matcher_->addLabels(cloud->header, {cloud, nullptr}));
+  }
+
+  void match(const std::optional<LabelMatcher::Pair>& pair)
+  {
+    if (pair) process(pair->first.cloud, pair->second);
+    if (const std::uint64_t dropped = matcher_->takeDropped())
+    {
+      const auto& nh = getPrivateNodeHandle();
+      const std::string reason =
+          "cloud on " + nh.resolveName("input") + " dropped: " + matcher_->describeLack(nh.resolveName("labels"));
+      if (diagnostics_.lacking(dropped, reason)) NODELET_WARN("%s", reason.c_str());
+    }
+    diagnostics_.setFigure("scans waiting for labels", matcher_->waiting());
+    diagnostics_.setFigure("labels without scan", matcher_->labelsWithoutCloud());
+  }
+
+  void process(const sensor_msgs::PointCloud2ConstPtr& message, const LabelPart& labels)
+  {
+    const bool original = original_.getNumSubscribers() > 0;
+    if (!original) history_->clear();
+    FrameHistory::FramePtr frame = history_->make();
     try
     {
-      const auto scan = boost::make_shared<OrganizedScan>();
-      organizer_->organize(viewOf(*message), *scan);
-      pcl_conversions::toPCL(message->header, scan->image.cloud.header);
-      output_.publish(boost::shared_ptr<LabelledCloud>(scan, &scan->image.cloud));
-      diagnostics_.processed();
+      StreamDiagnostics::StageMilliseconds stages;
+      organize(*message, labels, original, frame->scan, stages);
+      publish(message->header, frame->scan);
+      diagnostics_.processed(stages);
+      frame->message = message;
+      frame->stamp = microseconds(message->header);
     }
     catch (const std::exception& error)
     {
-      const std::string text = "cloud on " + getPrivateNodeHandle().resolveName("input") + " dropped: " + error.what();
-      if (diagnostics_.refused(text)) NODELET_ERROR("%s", text.c_str());
+      history_->recycle(std::move(frame));
+      return refuse("cloud on " + getPrivateNodeHandle().resolveName("input") + " dropped: " + error.what());
+    }
+    if (original)
+      history_->keep(std::move(frame));
+    else
+      history_->recycle(std::move(frame));
+  }
+
+  using Clock = std::chrono::steady_clock;
+  static double millisecondsSince(Clock::time_point start)
+  {
+    return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  }
+
+  void organize(const sensor_msgs::PointCloud2& message, const LabelPart& labels, bool all_points, OrganizedScan& scan,
+                StreamDiagnostics::StageMilliseconds& stages)
+  {
+    const RawCloud raw = viewOf(message);
+    const auto start = Clock::now();
+    organizer_->organize(raw, scan);
+    const auto organized = Clock::now();
+    if (config_.labeller.labels == "none")
+      labeller_->takeGeometry(scan, all_points);
+    else if (!config_.labeller.separate())
+      labeller_->takeOwn(scan);
+    else
+      takeSeparate(raw, labels, scan);
+    stages = {{"organize", millisecondsSince(start) - millisecondsSince(organized)},
+              {"label", millisecondsSince(organized)}};
+  }
+
+  void takeSeparate(const RawCloud& raw, const LabelPart& labels, OrganizedScan& scan)
+  {
+    try
+    {
+      if (labels.image)
+        labeller_->takeImage(viewOf(*labels.image), scan);
+      else
+        labeller_->takeCloud(viewOf(*labels.cloud), config_.organizer.label_field, raw, scan);
+    }
+    catch (const std::invalid_argument& error)
+    {
+      throw std::invalid_argument("labels on " + getPrivateNodeHandle().resolveName("labels") + ": " + error.what());
     }
   }
 
+  /// The image itself goes out, by pointer; its size is what carryBack() needs of it.
+  void publish(const std_msgs::Header& header, OrganizedScan& scan)
+  {
+    const LabelledCloud::Ptr cloud(new LabelledCloud);
+    cloud->swap(scan.image.cloud);
+    scan.image.cloud.width = cloud->width, scan.image.cloud.height = cloud->height;
+    pcl_conversions::toPCL(header, cloud->header);
+    output_.publish(pcl::ros_ptr(cloud));
+  }
+
+  void carryBack(const PanopticCloud& panoptic)
+  {
+    FrameHistory::FramePtr frame = history_->take(panoptic.header.stamp);
+    if (!frame)
+    {
+      diagnostics_.setFigure("instances without scan", ++without_scan_);
+      return;
+    }
+    try
+    {
+      original_labeller_->carryBack(frame->scan, panoptic, label_, instance_);
+      publishOriginal(*frame->message);
+    }
+    catch (const std::exception& error)
+    {
+      refuse("cloud on " + getPrivateNodeHandle().resolveName("panoptic") + " dropped: " + error.what());
+    }
+    history_->recycle(std::move(frame));
+  }
+
+  void publishOriginal(const sensor_msgs::PointCloud2& sent)
+  {
+    addLabels(viewOf(sent), label_, instance_, labelled_);
+    const auto message = boost::make_shared<sensor_msgs::PointCloud2>();
+    message->header = sent.header;
+    message->width = sent.width, message->height = sent.height;
+    message->is_bigendian = sent.is_bigendian, message->is_dense = sent.is_dense;
+    message->fields.resize(labelled_.fields.size());
+    for (std::size_t i = 0; i < labelled_.fields.size(); ++i)
+    {
+      message->fields[i].name = labelled_.fields[i].name;
+      message->fields[i].offset = labelled_.fields[i].offset;
+      message->fields[i].datatype = labelled_.fields[i].datatype;
+      message->fields[i].count = labelled_.fields[i].count;
+    }
+    message->point_step = labelled_.point_step, message->row_step = labelled_.row_step;
+    message->data.swap(labelled_.data);
+    original_.publish(message);
+  }
+
+  void refuse(const std::string& error)
+  {
+    if (diagnostics_.refused(error)) NODELET_ERROR("%s", error.c_str());
+  }
+
+  static constexpr std::uint32_t kQueue = 2;
+
+  OrganizerNodeletConfig config_;
   std::unique_ptr<Organizer> organizer_;
+  std::unique_ptr<ScanLabeller> labeller_;
+  std::unique_ptr<OriginalLabeller> original_labeller_;
+  std::unique_ptr<LabelMatcher> matcher_;
+  std::unique_ptr<FrameHistory> history_;
+  std::vector<std::uint32_t> label_, instance_;  ///< by sent point
+  OriginalCloud labelled_;
+  std::uint64_t without_scan_ = 0;
   StreamDiagnostics diagnostics_;
 
   std::mutex connect_mutex_;
   bool closed_ = false;
-  ros::Publisher output_;
-  ros::Subscriber input_;
+  ros::Publisher output_, original_;
+  ros::Subscriber input_, labels_, panoptic_;
 };
 }  // namespace lidar_panoptic_clustering
 

@@ -4,6 +4,7 @@
 #include <ros/ros.h>
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -31,18 +32,25 @@ public:
   /// A scan could not be used. Returns whether to log it: at most once in five seconds (roscpp's throttled macros keep
   /// their clock in a static that threads would race for).
   bool refused(const std::string& error);
+  /// `count` scans had to be let go for want of something else, as `reason` says. Returns whether to log it, likewise.
+  bool lacking(std::uint64_t count, const std::string& reason);
+  /// A further number to report, from now on, under a name of the nodelet's own.
+  void setFigure(const std::string& name, std::uint64_t value);
 
 private:
   struct Counts
   {
-    std::uint64_t processed = 0, overwritten = 0, refused = 0;
+    std::uint64_t processed = 0, overwritten = 0, lacking = 0, refused = 0;
   };
 
+  bool noteError(const std::string& error);
+  void summarize(diagnostic_updater::DiagnosticStatusWrapper& status) const;
   void report(diagnostic_updater::DiagnosticStatusWrapper& status);
 
   std::mutex mutex_;
   Counts counts_, reported_;  ///< since the start, and up to the last report
   StageMilliseconds sums_, longest_;
+  std::map<std::string, std::uint64_t> figures_;
   std::string last_error_;
   ros::WallTime last_report_, last_logged_;
 

@@ -61,6 +61,13 @@ const RawField* findCoordinate(const RawCloud& cloud, const char* name)
 }
 }  // namespace
 
+const RawField& findLabelField(const RawCloud& cloud, const std::string& name)
+{
+  const RawField* field = find(cloud, name, kLabel);
+  if (field == nullptr) throwMissing(cloud, kLabel);
+  return *field;
+}
+
 ScanFields findScanFields(const RawCloud& cloud, const FieldNames& names, bool with_labels)
 {
   checkSizes(cloud);
@@ -68,11 +75,7 @@ ScanFields findScanFields(const RawCloud& cloud, const FieldNames& names, bool w
   fields.x = findCoordinate(cloud, "x");
   fields.y = findCoordinate(cloud, "y");
   fields.z = findCoordinate(cloud, "z");
-  if (with_labels)
-  {
-    fields.label = find(cloud, names.label, kLabel);
-    if (fields.label == nullptr) throwMissing(cloud, kLabel);
-  }
+  if (with_labels) fields.label = &findLabelField(cloud, names.label);
   fields.intensity = find(cloud, names.intensity, kIntensity);
   fields.ring = find(cloud, names.ring, kRing);
   for (const RawField* field : {fields.x, fields.y, fields.z, fields.label, fields.intensity, fields.ring})

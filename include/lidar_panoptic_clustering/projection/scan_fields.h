@@ -24,6 +24,10 @@ struct ScanFields
   const RawField* ring = nullptr;       ///< null where it is not sent
 };
 
+/// The field with the class ids, by FieldNames::label. Throws std::invalid_argument, with what was expected and found,
+/// where there is none; its place in the point is not checked.
+const RawField& findLabelField(const RawCloud& cloud, const std::string& name);
+
 /// Finds the fields and makes sure that reading them at every point stays inside the data. Allocates nothing.
 ///
 /// `with_labels`: whether the cloud has to carry class ids. Throws std::invalid_argument, with what was expected and
