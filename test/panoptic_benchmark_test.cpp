@@ -44,6 +44,46 @@ TEST_F(PanopticBenchmark, SweepGivesARowAValue)
   EXPECT_EQ(merged.at("pq_th_present"), 0.0);
 }
 
+TEST_F(PanopticBenchmark, SwitchesGiveARowAStepAndReportsCompare)
+{
+  const std::string row = "--algorithms depth --set depth.theta_deg=5 ";
+  ASSERT_EQ(benchmark(row + "--sequences 03 --switches --semantics net --report a.json"), 0) << err();
+  ASSERT_EQ(benchmark(row + "--sequences 08 --switches --semantics net --report b.json"), 0) << err();
+  const auto r = report("a.json");
+  const std::vector<std::string> rows = {
+      "depth theta_deg=5",
+      "depth theta_deg=5, no step",
+      "depth theta_deg=5, only bridge",
+      "depth theta_deg=5, only split",
+      "depth theta_deg=5, only merge",
+      "depth theta_deg=5, only vote",
+      "depth theta_deg=5, all but bridge",
+      "depth theta_deg=5, all but split",
+      "depth theta_deg=5, all but merge",
+      "depth theta_deg=5, all but vote",
+  };
+  EXPECT_EQ(r.at("rows").get<std::vector<std::string>>(), rows);
+
+  ASSERT_EQ(benchmark("--algorithms depth --set depth.theta_deg=5 depth.bridge_distance_m=0 depth.split=false "
+                      "depth.merge=false depth.vote=true --sequences 03 --semantics net --report vote.json"),
+            0)
+      << err();
+  const auto vote = report("vote.json").at("quality").at("rows");
+  EXPECT_EQ(r.at("quality").at("rows").at(rows[5]), vote.at(vote.begin().key()));
+
+  ASSERT_EQ(run("--compare a.json b.json"), 0) << err();
+  EXPECT_NE(out().find("       a       b"), std::string::npos) << out();
+  EXPECT_NE(out().find("\ndepth theta_deg=5, all but vote   "), std::string::npos) << out();
+  EXPECT_NE(out().find("100.0   100.0"), std::string::npos) << out();
+
+  EXPECT_EQ(benchmark("--survey --switches"), 1);
+  EXPECT_NE(err().find("exclude each other"), std::string::npos) << err();
+  EXPECT_EQ(benchmark("--switches --set depth.vote=false"), 1);
+  EXPECT_NE(err().find("--switches sets vote itself"), std::string::npos) << err();
+  EXPECT_EQ(run("--compare a.json vote.json"), 1);
+  EXPECT_NE(err().find("expected the rows of a in vote, found others"), std::string::npos) << err();
+}
+
 TEST_F(PanopticBenchmark, PredictionFilesHoldCanonicalClassesAndInstances)
 {
   ASSERT_EQ(benchmark("--semantics net --algorithms euclidean --output out"), 0) << err();

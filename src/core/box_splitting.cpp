@@ -16,14 +16,14 @@ std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::uint32_t* thi
 {
   const std::uint32_t fewest = std::max(kFewestPoints, count / kSmallestShare);
   if (count < 2 * kFewestPoints) return 1;
-  for (int tenths = 9; tenths >= 2; --tenths)
+  constexpr int kFinest = 2;
+  // what hangs together at the finest distance does at the others too: a rest too small leaves nothing to part
+  link(scan, things, count, 0.1F * static_cast<float>(kFinest) * reach);
+  countSizeable(fewest);
+  if (count - *std::max_element(size_of_.begin(), size_of_.end()) < fewest) return 1;
+  for (int tenths = 9; tenths >= kFinest; --tenths)
   {
-    const float distance = 0.1F * static_cast<float>(tenths) * reach;
-    cells_.clear(count);
-    for (std::uint32_t k = 0; k < count; ++k)
-      cells_.add(scan.points[things[k]].x, scan.points[things[k]].y, 0, distance, k);
-    cells_.close();
-    cells_.findComponents({distance}, component_of_cell_);
+    link(scan, things, count, 0.1F * static_cast<float>(tenths) * reach);
     const std::uint32_t parts = countSizeable(fewest);
     if (parts < 2) continue;
     joinRest(scan, things, parts);
@@ -33,6 +33,16 @@ std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::uint32_t* thi
     return parts;
   }
   return 1;
+}
+
+/// Finds the components of points linked within `distance` [m].
+void BoxSplitter::link(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float distance)
+{
+  cells_.clear(count);
+  for (std::uint32_t k = 0; k < count; ++k)
+    cells_.add(scan.points[things[k]].x, scan.points[things[k]].y, 0, distance, k);
+  cells_.close();
+  cells_.findComponents({distance}, component_of_cell_);
 }
 
 /// Numbers the components that are large enough; the others have no part yet.

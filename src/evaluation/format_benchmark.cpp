@@ -5,6 +5,7 @@
 #include <cstdio>
 #include <limits>
 #include <numeric>
+#include <stdexcept>
 
 namespace lidar_panoptic_clustering
 {
@@ -162,7 +163,35 @@ std::string scanList(const BenchmarkReport& report)
   for (const auto& [sequence, count] : report.scans) total += count, sequences += " " + sequence;
   return std::to_string(total) + " scans of sequence" + (report.scans.size() == 1 ? "" : "s") + sequences;
 }
+
+std::vector<std::string> namesOf(const BenchmarkReport& report)
+{
+  std::vector<std::string> names;
+  for (const BenchmarkRow& row : report.rows) names.push_back(row.name);
+  return names;
+}
 }  // namespace
+
+std::string formatComparison(const std::vector<BenchmarkReport>& reports, const std::vector<std::string>& headings)
+{
+  if (reports.empty() || reports.size() != headings.size())
+    throw std::invalid_argument("expected as many headings as reports, found " + std::to_string(headings.size()) +
+                                " and " + std::to_string(reports.size()));
+  std::vector<Column> columns;
+  for (std::size_t i = 0; i < reports.size(); ++i)
+  {
+    if (namesOf(reports[i]) != namesOf(reports[0]))
+      throw std::invalid_argument("expected the rows of " + headings[0] + " in " + headings[i] + ", found others");
+    if (reports[i].before.quality.scanCount() == 0)
+      throw std::invalid_argument(headings[i] + ": expected scans with ground truth, found none");
+    const int width = std::max<int>(8, static_cast<int>(headings[i].size()) + 2);
+    columns.push_back({i == 0 ? "occur" : "", headings[i], "PQ %", width, 1, {}});
+    for (const BenchmarkRow& row : reports[i].rows)
+      columns.back().values.push_back(100 * row.evaluation.quality.figures().pq_th_present);
+  }
+  columns.push_back(timeColumns(reports.back())[3]);
+  return formatTable(reports[0], columns);
+}
 
 std::string formatBenchmark(const BenchmarkReport& report, std::size_t width)
 {

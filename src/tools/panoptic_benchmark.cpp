@@ -20,6 +20,7 @@ constexpr const char* kUsage =
 
   panoptic_benchmark --dataset DIR [options]
   panoptic_benchmark --merge a.json b.json .. [--report FILE.json] [--plot DIR]
+  panoptic_benchmark --compare a.json b.json ..
 
 Reads each scan once, runs every row (an algorithm with one setting) on it, gives all thing points an instance, those
 hidden in the range image too, and compares with the ground truth by the rules of the official evaluator. Ctrl-C ends
@@ -49,6 +50,8 @@ po::options_description describeOptions()
   options.add_options()("survey", "the settings of Zhao et al. 2021: no class sizes, no refinement");
   options.add_options()("set", list("A.P=V,V ..")->multitoken()->composing(),
                         "sets parameter P of algorithm A; several values, or several parameters, give a row each");
+  options.add_options()("switches",
+                        "also each row with no step of the refinement, with each alone, and with all but each");
   options.add_options()("jobs", number(1),
                         "threads, each on scans of its own; the quality does not depend on it, but times are best "
                         "taken with one");
@@ -63,6 +66,8 @@ po::options_description describeOptions()
   options.add_options()("columns", number(2048), "of the range image");
   options.add_options()("keep-going", "skip scans that cannot be used and count them in the report");
   options.add_options()("merge", list("FILE.json ..")->multitoken(), "add up the reports of shards");
+  options.add_options()("compare", list("FILE.json ..")->multitoken(),
+                        "print PQ of things of reports of the same rows side by side");
   return options;
 }
 
@@ -106,7 +111,9 @@ BenchmarkSettings readSettings(const po::variables_map& given)
   if (given.count("class-table") != 0) settings.class_table = textOf(given, "class-table");
   std::vector<std::string> algorithms;
   if (given.count("algorithms") != 0) algorithms = splitAtCommas(textOf(given, "algorithms"), "--algorithms");
-  settings.rows = makeRows(algorithms, listOf(given, "set"), given.count("survey") != 0);
+  if (given.count("switches") != 0 && given.count("survey") != 0)
+    throw std::invalid_argument("--switches and --survey exclude each other: the survey has no refinement");
+  settings.rows = makeRows(algorithms, listOf(given, "set"), given.count("survey") != 0, given.count("switches") != 0);
   settings.output = textOf(given, "output");
   settings.jobs = numberOf(given, "jobs", 1, 1024);
   readShard(textOf(given, "shard"), settings);
@@ -139,23 +146,35 @@ std::string readText(const std::string& path)
   return {std::istreambuf_iterator<char>(file), {}};
 }
 
-BenchmarkReport merge(const po::variables_map& given)
+std::vector<BenchmarkReport> loadReports(const po::variables_map& given, const char* option)
 {
-  if (given.count("dataset") != 0) throw std::invalid_argument("--merge takes reports, not --dataset");
-  std::optional<BenchmarkReport> sum;
-  for (const std::string& path : listOf(given, "merge"))
+  if (given.count("dataset") != 0)
+    throw std::invalid_argument("--" + std::string(option) + " takes reports, not --dataset");
+  std::vector<BenchmarkReport> reports;
+  for (const std::string& path : listOf(given, option))
   {
     const std::string text = readText(path);
     const bool table_given = given.count("class-table") != 0;
     const std::string name = table_given ? textOf(given, "class-table") : BenchmarkReport::classTableOf(text, path);
     const auto table = std::make_shared<const ClassTable>(ClassTable::load(name));
-    BenchmarkReport report = BenchmarkReport::fromJsonText(text, path, table);
-    if (sum)
-      *sum += report;
-    else
-      sum.emplace(std::move(report));
+    reports.push_back(BenchmarkReport::fromJsonText(text, path, table));
   }
-  return *sum;
+  return reports;
+}
+
+BenchmarkReport merge(const po::variables_map& given)
+{
+  std::vector<BenchmarkReport> reports = loadReports(given, "merge");
+  for (std::size_t i = 1; i < reports.size(); ++i) reports[0] += reports[i];
+  return std::move(reports[0]);
+}
+
+void compare(const po::variables_map& given)
+{
+  std::vector<std::string> headings;
+  for (const std::string& path : listOf(given, "compare")) headings.push_back(fs::path(path).stem().string());
+  std::cout << formatComparison(loadReports(given, "compare"), headings) << std::flush;
+  if (!std::cout) throw std::runtime_error("cannot write the table to standard output");
 }
 
 void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
@@ -169,6 +188,11 @@ void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
 /// Exit status.
 int run(const po::variables_map& given)
 {
+  if (given.count("compare") != 0)
+  {
+    compare(given);
+    return EXIT_SUCCESS;
+  }
   const std::string plot = textOf(given, "plot");
   const bool merging = given.count("merge") != 0;
   const BenchmarkSettings settings = merging ? BenchmarkSettings{} : readSettings(given);

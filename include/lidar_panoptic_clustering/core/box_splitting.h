@@ -15,7 +15,7 @@ namespace lidar_panoptic_clustering
 /// a tenth of the object's points each, and at least ten. What is not in one of them joins the nearest of them
 /// (outline to outline).
 ///
-/// At the most eight times linear in the points; keeps its memory.
+/// At the most nine times linear in the points; keeps its memory.
 class BoxSplitter
 {
 public:
@@ -27,6 +27,7 @@ public:
 private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
+  void link(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float distance);
   std::uint32_t countSizeable(std::uint32_t fewest);
   void joinRest(const ThingScan& scan, const std::uint32_t* things, std::uint32_t parts);
 

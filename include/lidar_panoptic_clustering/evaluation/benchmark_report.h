@@ -50,4 +50,9 @@ struct BenchmarkReport
 /// one below the other; 0 stands for any width. When sequence 08 is whole, the survey's own published figures [Zhao et
 /// al. 2021] stand beside, marked as theirs.
 std::string formatBenchmark(const BenchmarkReport& report, std::size_t width = 0);
+
+/// Several reports of the same rows side by side: PQ of things over the classes that occur, a line a row and a column a
+/// report, and the median time of the pipeline in the last report. `headings`: one a report. Throws
+/// std::invalid_argument when the rows differ or a report holds no evaluated scan.
+std::string formatComparison(const std::vector<BenchmarkReport>& reports, const std::vector<std::string>& headings);
 }  // namespace lidar_panoptic_clustering

@@ -21,6 +21,7 @@ struct RowSettings
   std::string algorithm;
   ParameterMap parameters;  ///< text, as given
   bool survey = false;      ///< on top of surveyParameters() instead of the defaults
+  std::string steps{};      ///< which steps of the refinement are on, for the name; empty: as the parameters say
 
   ParameterMap allParameters() const
   {
@@ -111,6 +112,40 @@ inline std::vector<RowSettings> applySweep(const std::vector<RowSettings>& rows,
   return result;
 }
 
+/// A step of the refinement, and what switches it off.
+struct RefinementSwitch
+{
+  const char *step, *parameter, *off;
+};
+constexpr RefinementSwitch kRefinementSwitches[] = {{"bridge", "bridge_distance_m", "0"},
+                                                    {"split", "split", "false"},
+                                                    {"merge", "merge", "false"},
+                                                    {"vote", "vote", "false"}};
+
+/// The row itself, and with no step of the refinement, with each step alone, and with all but each step. Throws
+/// std::invalid_argument when the row sets a step already.
+inline std::vector<RowSettings> switchRows(const RowSettings& row)
+{
+  for (const RefinementSwitch& s : kRefinementSwitches)
+    if (row.parameters.count(s.parameter) != 0)
+      throw std::invalid_argument("--switches sets " + std::string(s.parameter) + " itself, found --set " +
+                                  row.algorithm + "." + s.parameter);
+  const auto with = [&row](const std::string& steps, const auto& isOff)
+  {
+    RowSettings variant = row;
+    variant.steps = steps;
+    for (const RefinementSwitch& s : kRefinementSwitches)
+      if (isOff(s)) variant.parameters[s.parameter] = std::string(s.off);
+    return variant;
+  };
+  std::vector<RowSettings> rows = {row, with("no step", [](const auto&) { return true; })};
+  for (const RefinementSwitch& s : kRefinementSwitches)
+    rows.push_back(with(std::string("only ") + s.step, [&s](const auto& other) { return other.step != s.step; }));
+  for (const RefinementSwitch& s : kRefinementSwitches)
+    rows.push_back(with(std::string("all but ") + s.step, [&s](const auto& other) { return other.step == s.step; }));
+  return rows;
+}
+
 /// Names the row by what is set, and drops rows that a sweep made equal to one before.
 inline std::vector<RowSettings> nameRows(std::vector<RowSettings> rows)
 {
@@ -118,8 +153,14 @@ inline std::vector<RowSettings> nameRows(std::vector<RowSettings> rows)
   for (RowSettings& row : rows)
   {
     row.name = row.algorithm + (row.survey ? " survey" : "");
+    const auto is_switch = [&row](const std::string& parameter)
+    {
+      return !row.steps.empty() && std::any_of(std::begin(kRefinementSwitches), std::end(kRefinementSwitches),
+                                               [&](const auto& s) { return parameter == s.parameter; });
+    };
     for (const auto& [parameter, value] : row.parameters)
-      row.name += " " + parameter + "=" + std::get<std::string>(value);
+      if (!is_switch(parameter)) row.name += " " + parameter + "=" + std::get<std::string>(value);
+    if (!row.steps.empty()) row.name += ", " + row.steps;
     const auto same = [&](const RowSettings& other) { return other.name == row.name; };
     if (std::none_of(result.begin(), result.end(), same)) result.push_back(std::move(row));
   }
@@ -127,15 +168,23 @@ inline std::vector<RowSettings> nameRows(std::vector<RowSettings> rows)
 }
 
 /// The rows of `--algorithms` (none: all), with the survey's settings or the defaults, and all `--set`, several of one
-/// algorithm combined. Throws std::invalid_argument on unknown algorithms, parameters and values out of range, with
-/// what there is.
+/// algorithm combined; with `switches`, each as switchRows() has it. Throws std::invalid_argument on unknown
+/// algorithms, parameters and values out of range, with what there is.
 inline std::vector<RowSettings> makeRows(const std::vector<std::string>& algorithms,
-                                         const std::vector<std::string>& sets, bool survey = false)
+                                         const std::vector<std::string>& sets, bool survey = false,
+                                         bool switches = false)
 {
   std::vector<RowSettings> rows = algorithms.empty() ? allRows() : std::vector<RowSettings>{};
   for (const std::string& name : algorithms) rows.push_back({name, name, {}, false});
   for (RowSettings& row : rows) makeAlgorithm(row.algorithm), row.survey = survey;
   for (const std::string& text : sets) rows = applySweep(rows, parseSweep(text));
+  if (switches)
+  {
+    std::vector<RowSettings> all;
+    for (const RowSettings& row : rows)
+      for (RowSettings& variant : switchRows(row)) all.push_back(std::move(variant));
+    rows = std::move(all);
+  }
   for (const RowSettings& row : rows)
   {
     try
