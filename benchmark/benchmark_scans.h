@@ -27,7 +27,7 @@ inline std::shared_ptr<const ClassTable> table()
   return loaded;
 }
 
-inline Scans simulatedScans(const LidarModel& model, std::size_t count)
+inline Scans simulatedScans(const SensorModel& model, std::size_t count)
 {
   LidarSimulator simulator(model);
   Scans scans(count);
@@ -46,9 +46,9 @@ inline Scans simulatedScans(const LidarModel& model, std::size_t count)
 }
 
 /// Twice the beams: one more between every two.
-inline LidarModel hdl128e()
+inline SensorModel hdl128e()
 {
-  LidarModel model = hdl64e();
+  SensorModel model = SensorModel::load("hdl64e");
   std::vector<float> elevations;
   for (std::size_t i = 0; i < model.elevations_rad.size(); ++i)
   {

@@ -91,7 +91,7 @@ int main(int argc, char** argv)
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   const Scans recorded = recordedScans();
-  const Scans scans = recorded.empty() ? simulatedScans(hdl64e(), 10) : recorded;
+  const Scans scans = recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded;
   add("euclidean/pcl_straight", [&scans](benchmark::State& state) { euclideanStraight(state, scans); });
   add("euclidean/ours", [&scans](benchmark::State& state) { cluster(state, scans, "euclidean"); });
   add("supervoxel/pcl_straight", [&scans](benchmark::State& state) { supervoxelStraight(state, scans); });

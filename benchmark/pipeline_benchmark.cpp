@@ -70,7 +70,7 @@ int main(int argc, char** argv)
   benchmark::Initialize(&argc, argv);
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // else the C library learns to keep a freed frame, and new memory is not new
-  const Scans simulated = simulatedScans(hdl64e(), 10), recorded = recordedScans();
+  const Scans simulated = simulatedScans(SensorModel::load("hdl64e"), 10), recorded = recordedScans();
   addWholeScans("simulated", simulated);
   addWholeScans("recorded", recorded);
 

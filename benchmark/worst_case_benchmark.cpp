@@ -9,7 +9,8 @@ int main(int argc, char** argv)
   if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   const Scans recorded = recordedScans();
   std::vector<std::pair<std::string, Scans>> builds;
-  builds.emplace_back("usual", allThings(recorded.empty() ? simulatedScans(hdl64e(), 10) : recorded));
+  builds.emplace_back("usual",
+                      allThings(recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded));
   for (const auto& worst : worstScans()) builds.emplace_back(worst.name, Scans{worst.build(64, 2048)});
   for (const std::string name : {"depth", "scan_line_run", "birds_eye"})
     for (const auto& [build, scans] : builds)
