@@ -107,7 +107,10 @@ void expectInstances(const sensor_msgs::PointCloud2& back, const PanopticCloud& 
       const PanopticPoint& p = expected.points[row * expected.width + column];
       const std::size_t i = index(row, column);
       ASSERT_EQ(instance[i], p.instance) << row << ", " << column;
-      if (std::isfinite(p.x)) ASSERT_EQ(label[i], p.label) << row << ", " << column;
+      if (std::isfinite(p.x))
+      {
+        ASSERT_EQ(label[i], p.label) << row << ", " << column;
+      }
       things += p.instance > 0 ? 1 : 0;
     }
   EXPECT_GT(things, 100U);
@@ -237,9 +240,9 @@ TEST_F(RecordedSensors, WithoutLabelsGiveObjectsOnTheGround)
   ros::param::set(name_ + "/labels", "none");
   const std::string clusterer = newName();
   ros::param::set(clusterer + "/class_table", "object");
-  const Chain chain([this](const auto& name, const auto& type, const auto& remappings)
-                    { return tryLoad(name, type, remappings); },
-                    name_, "BirdsEyeClusterNodelet", clusterer);
+  Chain chain([this](const auto& name, const auto& type, const auto& remappings)
+              { return tryLoad(name, type, remappings); },
+              name_, "BirdsEyeClusterNodelet", clusterer);
   std::uint32_t second = 100;
   for (const std::string file : {"pandaset/0001.pcd", "pandaset/0002.pcd", "pandaset/0003.pcd",
                                  "ouster/os1_128_1024_0.pcd", "ouster/os1_128_1024_1.pcd"})
