@@ -28,8 +28,7 @@ public:
     original = std::make_unique<Probe<sensor_msgs::PointCloud2>>(name + "/output_original");
     waitForSubscriber(input);
     if (separate_labels) waitForSubscriber(labels);
-    EXPECT_TRUE(
-        eventually([&] { return ros::TopicManager::instance()->getNumSubscribers(clusterer + "/output") == 2; }));
+    waitForListener(clusterer + "/output");  // one for both who listen: roscpp has one a topic and process
   }
 
   const std::string name;
@@ -122,7 +121,7 @@ TEST_F(OrganizerLayouts, VelodyneDriverIsTransposedAndBeginsAtTheLowestRing)
   ros::param::set(name_ + "/labels", "image");
   const Chain chain = makeChain("ScanLineRunClusterNodelet", true);
   chain.input.publish(toRosMessage(fromVelodyneDriver(scan)));
-  chain.labels.publish(labelImage(scan));
+  chain.labels.publish(labelImage<std::uint16_t>(scan, sensor_msgs::image_encodings::MONO16));
   const auto back = chain.original->next();
   ASSERT_TRUE(back);
   EXPECT_EQ(back->width, 16U);
@@ -137,7 +136,7 @@ TEST_F(OrganizerLayouts, OusterDriverHasRingsAndZeros)
   ros::param::set(name_ + "/labels", "image");
   const Chain chain = makeChain("DepthClusterNodelet", true);
   chain.input.publish(toRosMessage(fromOusterDriver(scan)));
-  chain.labels.publish(labelImage(scan));
+  chain.labels.publish(labelImage<std::uint16_t>(scan, sensor_msgs::image_encodings::MONO16));
   const auto back = chain.original->next();
   ASSERT_TRUE(back);
   EXPECT_EQ(back->point_step, 56U);

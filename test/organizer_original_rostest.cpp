@@ -201,7 +201,7 @@ TEST_F(OriginalGraph, HiddenPointsOfAnUnorganisedCloudHaveTheInstanceOfTheirObje
       EXPECT_EQ(instance[i], 0U);
       continue;
     }
-    EXPECT_EQ(instance[i] == 1, y < 2.0F) << "the car on the right, or on the left";
+    EXPECT_EQ(instance[i] == 1, y > 2.0F) << "columns go clockwise: the car on the left comes first";
     ++points_of_instance[instance[i]];
   }
   EXPECT_EQ(points_of_instance.size(), 2U);

@@ -43,8 +43,8 @@ struct Appearance
 bool isPole(const ScanComponent& c, const Appearance& a)
 {
   if (a.maybe_tall && a.size.length < 1.0F && (a.tall || c.bottom > 0.5F)) return true;
-  // thinner than a person, from the side too
-  return c.top > 1.5F && (a.size.length < 0.25F || (a.size.length < 0.6F && a.size.width < 0.1F));
+  // thinner than a person, from the side too; posts of signs are 0.06 to 0.1 m thick
+  return c.top > 1.5F && (a.size.length < 0.18F || (a.size.length < 0.6F && a.size.width < 0.1F));
 }
 
 /// Riders and their two-wheelers are as rough, but small, and stand on wheels.
