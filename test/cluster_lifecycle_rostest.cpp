@@ -186,7 +186,7 @@ TEST_F(ClusterLifecycle, NewestScanWinsAndDroppedOnesAreCounted)
   const auto input = advertise<LabelledCloud>(name + "/input");
   Probe<PanopticCloud> output(name + "/output");
   waitForSubscriber(input);
-  LabelledCloud cloud = randomScan(1, 32, 512);
+  LabelledCloud cloud = randomScan(1, 64, 1024);
   constexpr std::uint64_t kSent = 200;
   for (std::uint64_t i = 1; i <= kSent; ++i)
   {

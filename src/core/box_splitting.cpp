@@ -42,7 +42,8 @@ void BoxSplitter::link(const ThingScan& scan, const std::uint32_t* things, std::
   for (std::uint32_t k = 0; k < count; ++k)
     cells_.add(scan.points[things[k]].x, scan.points[things[k]].y, 0, distance, k);
   cells_.close();
-  cells_.findComponents({distance}, component_of_cell_);
+  distance_.assign(1, distance);
+  cells_.findComponents(distance_, component_of_cell_);
 }
 
 /// Numbers the components that are large enough; the others have no part yet.

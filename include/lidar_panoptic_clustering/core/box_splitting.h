@@ -32,6 +32,7 @@ private:
   void joinRest(const ThingScan& scan, const std::uint32_t* things, std::uint32_t parts);
 
   PlanarCells cells_;
+  std::vector<float> distance_;  ///< the one link distance
   std::vector<std::uint32_t> component_of_cell_;
   std::vector<std::uint32_t> size_of_, part_of_;  ///< by component
   std::vector<Footprint> outline_;                ///< by component
