@@ -9,19 +9,19 @@ namespace
 {
 constexpr std::uint32_t kFewestPoints = 10;
 constexpr std::uint32_t kSmallestShare = 10;  // one in ten
+constexpr int kFinest = 2;
 }  // namespace
 
 std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach,
-                                 std::vector<std::uint32_t>& part)
+                                 int& tenths, std::vector<std::uint32_t>& part)
 {
   const std::uint32_t fewest = std::max(kFewestPoints, count / kSmallestShare);
-  if (count < 2 * kFewestPoints) return 1;
-  constexpr int kFinest = 2;
+  if (count < 2 * kFewestPoints || tenths < kFinest) return 1;
   // what hangs together at the finest distance does at the others too: a rest too small leaves nothing to part
   link(scan, things, count, 0.1F * static_cast<float>(kFinest) * reach);
   countSizeable(fewest);
   if (count - *std::max_element(size_of_.begin(), size_of_.end()) < fewest) return 1;
-  for (int tenths = 9; tenths >= kFinest; --tenths)
+  for (; tenths >= kFinest; --tenths)
   {
     link(scan, things, count, 0.1F * static_cast<float>(tenths) * reach);
     const std::uint32_t parts = countSizeable(fewest);

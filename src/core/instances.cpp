@@ -150,8 +150,10 @@ void Refinement::splitTooBig(const ThingScan& scan)
 void Refinement::split(const ThingScan& scan, Range range)
 {
   const std::uint32_t object = object_of_thing_[things_[range.begin]];
-  const std::uint32_t parts = splitter_.split(scan, &things_[range.begin], range.end - range.begin,
-                                              scan.class_link_distance[objects_[object].class_index], part_of_);
+  const float reach = scan.class_link_distance[objects_[object].class_index];
+  int tenths = range.tenths;
+  const std::uint32_t parts =
+      splitter_.split(scan, &things_[range.begin], range.end - range.begin, reach, tenths, part_of_);
   if (parts < 2) return;
 
   const auto first_fresh = static_cast<std::uint32_t>(objects_.size());
@@ -177,7 +179,7 @@ void Refinement::split(const ThingScan& scan, Range range)
     for (std::uint32_t k = range.begin; k < range.end; ++k)
       if (part_of_[k - range.begin] == part) sorted_[end++] = things_[k];
     elect(object_of_part(part), scan.class_count);
-    if (isTooBig(objects_[object_of_part(part)])) open_.push_back({range.begin + begin, range.begin + end});
+    if (isTooBig(objects_[object_of_part(part)])) open_.push_back({range.begin + begin, range.begin + end, tenths - 1});
     begin = end;
   }
   std::copy(sorted_.begin(), sorted_.end(), things_.begin() + range.begin);

@@ -15,13 +15,17 @@ namespace lidar_panoptic_clustering
 /// a tenth of the object's points each, and at least ten. What is not in one of them joins the nearest of them
 /// (outline to outline).
 ///
-/// At the most nine times linear in the points; keeps its memory.
+/// Nine passes over the points at the most; keeps its memory.
 class BoxSplitter
 {
 public:
-  /// `things`: the object's `count` points, indices into the scan. Returns the number of parts, 1 where it hangs
-  /// together; else `part` holds each thing's part, 0..n-1, parallel to `things`.
-  std::uint32_t split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach,
+  static constexpr int kCoarsest = 9;
+
+  /// `things`: the object's `count` points, indices into the scan. `tenths`: where to begin, at most kCoarsest; becomes
+  /// the distance found, where the parts hang together, so that each of them need only be looked at below it. Returns
+  /// the number of parts, 1 where the object hangs together; else `part` holds each thing's part, 0..n-1, parallel to
+  /// `things`.
+  std::uint32_t split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach, int& tenths,
                       std::vector<std::uint32_t>& part);
 
 private:

@@ -60,9 +60,11 @@ public:
   void refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances);
 
 private:
+  /// An object to be split.
   struct Range
   {
-    std::uint32_t begin, end;
+    std::uint32_t begin, end;             ///< of things_
+    int tenths = BoxSplitter::kCoarsest;  ///< the distance to begin with
   };
 
   void gather(const ThingScan& scan, const std::vector<std::uint32_t>& component);
@@ -88,7 +90,7 @@ private:
   std::vector<std::uint32_t> whole_of_, id_of_;  ///< by object
 
   std::vector<std::uint32_t> things_;  ///< of the objects too big for their class, object by object
-  std::vector<Range> open_;            ///< of things_: what is still to be split
+  std::vector<Range> open_;            ///< what is still to be split
   std::vector<std::uint32_t> slot_of_, part_of_, sorted_;
 };
 }  // namespace lidar_panoptic_clustering
