@@ -249,11 +249,30 @@ TEST(GroundLabeler, ASectorIsEnoughAndDoesNotClose)
 {
   RaySensor sector;
   sector.columns = 400, sector.from_deg = 60.0F, sector.turn_deg = 120.0F;
-  GroundLabelerConfig config;
-  config.full_turn = false;
-  const Labelled scan(sceneOf({kCarAhead}), sector, config);
+  const Labelled scan(sceneOf({kCarAhead}), sector);
   EXPECT_GT(scan.of(kGroundHit).ground, 0.995);
   EXPECT_GT(scan.of(0).object, 0.95);
+}
+
+TEST(GroundLabeler, CarsAtBothEndsOfASectorAreTwo)
+{
+  RaySensor sector;
+  sector.columns = 256, sector.from_deg = 45.0F, sector.turn_deg = 90.0F;
+  const SceneBox left{{6.0F, 6.1F, 0.22F}, {10.4F, 7.9F, 1.5F}}, right{{6.0F, -7.9F, 0.22F}, {10.4F, -6.1F, 1.5F}};
+  for (const char* field_of_view : {"auto", "sector", "full_turn"})
+  {
+    GroundLabelerConfig config;
+    config.field_of_view = field_of_view;
+    const Labelled scan(sceneOf({left, right}), sector, config);
+    for (const int box : {0, 1})
+    {
+      EXPECT_GT(scan.of(box).count, 100) << field_of_view;
+      if (config.field_of_view == "full_turn")
+        EXPECT_LT(scan.of(box).object, 0.1) << "one thing too wide for a vehicle";
+      else
+        EXPECT_GT(scan.of(box).object, 0.95) << field_of_view;
+    }
+  }
 }
 
 TEST(GroundLabeler, NothingButTheLabelsChanges)

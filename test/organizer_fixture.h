@@ -42,8 +42,8 @@ protected:
   {
     set("labels", labels);
     input_ = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
-    if (labels == "image") labels_ = advertise<sensor_msgs::Image>(name_ + "/labels");
-    if (labels == "cloud") labels_ = advertise<sensor_msgs::PointCloud2>(name_ + "/labels");
+    if (labels == "image") labels_ = advertise<sensor_msgs::Image>(name_ + "/label_input");
+    if (labels == "cloud") labels_ = advertise<sensor_msgs::PointCloud2>(name_ + "/label_input");
     diagnostics_ = std::make_unique<DiagnosticsProbe>(name_);
     ASSERT_TRUE(tryLoad(name_, "OrganizerNodelet"));
     output_ = std::make_unique<Probe<LabelledCloud>>(name_ + "/output");

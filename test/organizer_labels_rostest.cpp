@@ -38,7 +38,8 @@ protected:
     input_.publish(unlabelledScene());
     labels_.publish(bad);
     const std::string message = log.waitFor("dropped");
-    EXPECT_NE(message.find("cloud on " + name_ + "/input dropped: labels on " + name_ + "/labels: "), std::string::npos)
+    EXPECT_NE(message.find("cloud on " + name_ + "/input dropped: labels on " + name_ + "/label_input: "),
+              std::string::npos)
         << message;
     EXPECT_NE(message.find(reason), std::string::npos) << message;
     EXPECT_EQ(diagnostics_->waitFor("scans refused", "1")["last error"], message);
@@ -114,7 +115,7 @@ TEST_F(LabelsFromImage, ThatNeverComeCostTheirCloudsAndThatIsSaid)
     diagnostics_->waitFor("scans waiting for labels", frame == 0 ? "1" : "2");
   }
   const std::string message = log.waitFor("dropped");
-  EXPECT_NE(message.find("cloud on " + name_ + "/input dropped: expected labels on " + name_ + "/labels"),
+  EXPECT_NE(message.find("cloud on " + name_ + "/input dropped: expected labels on " + name_ + "/label_input"),
             std::string::npos)
       << message;
   EXPECT_NE(message.find("no labels"), std::string::npos) << message;
@@ -302,6 +303,9 @@ TEST_F(WrongParameters, KeepItFromLoading)
   set("labels", "none");
   set("label_table", "nuscenes");
   expectNotLoaded("label_table: expected 'object' or nothing, as labels is 'none', found 'nuscenes'");
+  set("label_table", "object");
+  set("class_table", "semantic_kitti");
+  expectNotLoaded("class_table: expected one with a thing class 'object', as labels is 'none', found 'semantic_kitti'");
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

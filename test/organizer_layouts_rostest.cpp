@@ -22,7 +22,7 @@ public:
         panoptic(clusterer + "/output"),
         input(advertise<sensor_msgs::PointCloud2>(name + "/input"))
   {
-    if (separate_labels) labels = advertise<sensor_msgs::Image>(name + "/labels");
+    if (separate_labels) labels = advertise<sensor_msgs::Image>(name + "/label_input");
     EXPECT_TRUE(load(name, "OrganizerNodelet", {{name + "/panoptic", clusterer + "/output"}}));
     EXPECT_TRUE(load(clusterer, cluster_nodelet, {{clusterer + "/input", name + "/output"}}));
     original = std::make_unique<Probe<sensor_msgs::PointCloud2>>(name + "/output_original");

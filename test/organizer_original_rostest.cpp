@@ -19,7 +19,7 @@ protected:
     ASSERT_TRUE(tryLoad(clusterer_, "BirdsEyeClusterNodelet", {{clusterer_ + "/input", name_ + "/output"}}));
     set("labels", labels);
     input_ = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
-    if (labels == "image") labels_ = advertise<sensor_msgs::Image>(name_ + "/labels");
+    if (labels == "image") labels_ = advertise<sensor_msgs::Image>(name_ + "/label_input");
     diagnostics_ = std::make_unique<DiagnosticsProbe>(name_);
     ASSERT_TRUE(tryLoad(name_, "OrganizerNodelet", {{name_ + "/panoptic", clusterer_ + "/output"}}));
     original_ = std::make_unique<Probe<sensor_msgs::PointCloud2>>(name_ + "/output_original");

@@ -36,6 +36,12 @@ std::array<std::uint8_t, 256> linkKeys(const ClassTable& table, ClassPolicy poli
   return keys;
 }
 
+/// Between neighbouring columns, where they span a turn [rad].
+float fullTurnAngle(std::uint32_t columns)
+{
+  return static_cast<float>(2.0 * kPi / std::max(1U, columns));
+}
+
 void noteUnknown(std::vector<std::uint32_t>& labels, std::uint32_t label)
 {
   if (labels.size() < kMaxUnknownLabels && std::find(labels.begin(), labels.end(), label) == labels.end())
@@ -93,17 +99,22 @@ ClassPolicy classPolicyFromName(const std::string& name)
   return static_cast<ClassPolicy>(found - names.begin());
 }
 
+bool closesOnItself(const std::string& field_of_view, float column_angle, std::uint32_t columns)
+{
+  constexpr float kNearlyAll = 0.9F;
+  if (field_of_view != "auto") return field_of_view == "full_turn";
+  return column_angle == 0.0F || column_angle > kNearlyAll * fullTurnAngle(columns);
+}
+
 namespace
 {
 void findFieldOfView(const LabelledCloud& cloud, const SelectionConfig& config, ThingScan& scan)
 {
-  constexpr float kNearlyAll = 0.9F;
-  const auto full_turn_angle = static_cast<float>(2.0 * kPi / std::max(1U, scan.columns));
-  scan.column_angle = full_turn_angle;
+  scan.column_angle = fullTurnAngle(scan.columns);
   scan.full_turn = true;
   if (config.field_of_view == "full_turn") return;
   const float measured = measureColumnAngle(cloud, static_cast<float>(config.max_range_m));
-  scan.full_turn = config.field_of_view == "auto" && (measured == 0.0F || measured > kNearlyAll * full_turn_angle);
+  scan.full_turn = closesOnItself(config.field_of_view, measured, scan.columns);
   if (!scan.full_turn) scan.column_angle = measured;
 }
 }  // namespace

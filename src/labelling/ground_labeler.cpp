@@ -81,11 +81,12 @@ void GroundLabeler::label(LabelledCloud& cloud)
   if (cloud.points.size() != std::size_t{cloud.width} * cloud.height)
     throw std::invalid_argument("expected width x height points, found a cloud of " + std::to_string(cloud.width) +
                                 " x " + std::to_string(cloud.height) + " with " + std::to_string(cloud.points.size()));
-  found_ground_ =
-      surface_.measure(cloud, static_cast<float>(config_.max_range_m), static_cast<float>(config_.max_slope), returns_);
+  const auto max_range = static_cast<float>(config_.max_range_m);
+  found_ground_ = surface_.measure(cloud, max_range, static_cast<float>(config_.max_slope), returns_);
   const float above = found_ground_ ? static_cast<float>(config_.ground_height_m)  //
                                     : -std::numeric_limits<float>::infinity();
-  components_.find(cloud, returns_, above, static_cast<float>(config_.link_m), config_.full_turn);
+  const bool closed = closesOnItself(config_.field_of_view, measureColumnAngle(cloud, max_range), cloud.width);
+  components_.find(cloud, returns_, above, static_cast<float>(config_.link_m), closed);
 
   label_of_component_.clear();
   for (const ScanComponent& c : components_.list())

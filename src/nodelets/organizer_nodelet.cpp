@@ -53,9 +53,9 @@ RawImage viewOf(const sensor_msgs::Image& image)
 /// nodelet's output of that, on ~panoptic, -> ~output_original, the driver's cloud with a label and an instance a
 /// point.
 ///
-/// The classes come with the cloud, on ~labels as sensor_msgs/Image or as a second PointCloud2, or from the geometry,
-/// as the parameter labels says. A cloud waits until its labels come; one that more than queue_size others have
-/// overtaken, or whose successor's labels have come, is dropped and counted.
+/// The classes come with the cloud, on ~label_input as sensor_msgs/Image or as a second PointCloud2, or from the
+/// geometry, as the parameter labels says. A cloud waits until its labels come; one that more than queue_size others
+/// have overtaken, or whose successor's labels have come, is dropped and counted.
 ///
 /// Clouds go by pointer inside a nodelet manager. Subscribes only while someone listens to an output, to ~panoptic only
 /// while someone listens to ~output_original. What cannot be used is dropped, logged once in a while and shown in the
@@ -135,9 +135,9 @@ private:
       const auto queue = config_.labeller.separate() ? static_cast<std::uint32_t>(config_.matcher.queue_size) : kQueue;
       const auto hints = ros::TransportHints().tcpNoDelay();
       if (config_.labeller.labels == "image")
-        labels_ = nh.subscribe("labels", queue, &OrganizerNodelet::receiveImage, this, hints);
+        labels_ = nh.subscribe("label_input", queue, &OrganizerNodelet::receiveImage, this, hints);
       else if (config_.labeller.labels == "cloud")
-        labels_ = nh.subscribe("labels", queue, &OrganizerNodelet::receiveLabelCloud, this, hints);
+        labels_ = nh.subscribe("label_input", queue, &OrganizerNodelet::receiveLabelCloud, this, hints);
       input_ = nh.subscribe("input", queue, &OrganizerNodelet::receive, this, hints);
     }
   }
@@ -167,7 +167,7 @@ private:
     {
       const auto& nh = getPrivateNodeHandle();
       const std::string reason =
-          "cloud on " + nh.resolveName("input") + " dropped: " + matcher_->describeLack(nh.resolveName("labels"));
+          "cloud on " + nh.resolveName("input") + " dropped: " + matcher_->describeLack(nh.resolveName("label_input"));
       if (diagnostics_.lacking(dropped, reason)) NODELET_WARN("%s", reason.c_str());
     }
     diagnostics_.setFigure("scans waiting for labels", matcher_->waiting());
@@ -233,7 +233,8 @@ private:
     }
     catch (const std::invalid_argument& error)
     {
-      throw std::invalid_argument("labels on " + getPrivateNodeHandle().resolveName("labels") + ": " + error.what());
+      throw std::invalid_argument("labels on " + getPrivateNodeHandle().resolveName("label_input") + ": " +
+                                  error.what());
     }
   }
 

@@ -41,7 +41,18 @@ ScanLabeller::ScanLabeller(const ScanLabellerConfig& config)
 {
   const std::string target = config.class_table.empty() ? labelTableName(config) : config.class_table;
   class_table_ = std::make_shared<const ClassTable>(ClassTable::load(target));
-  if (target != labelTableName(config)) mapping_.emplace(*label_table_, *class_table_);
+  if (target == labelTableName(config)) return;
+  mapping_.emplace(*label_table_, *class_table_);
+  if (config.labels == "none") requireObjects();
+}
+
+/// Else whatever the ground labeler finds would be lost without a word.
+void ScanLabeller::requireObjects() const
+{
+  const std::uint32_t object = (*label_table_)[label_table_->findByName("object")].ids.at(0);
+  if (!(*class_table_)[class_table_->find((*mapping_)(object))].isThing())
+    throw std::invalid_argument("class_table: expected one with a thing class 'object', as labels is 'none', found '" +
+                                class_table_->name() + "'");
 }
 
 void ScanLabeller::takeOwn(OrganizedScan& scan)

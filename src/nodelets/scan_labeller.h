@@ -44,7 +44,8 @@ struct ScanLabellerConfig
 class ScanLabeller
 {
 public:
-  /// Throws std::runtime_error or std::invalid_argument when a table cannot be read.
+  /// Throws std::runtime_error or std::invalid_argument when a table cannot be read or has no place for objects without
+  /// a class.
   explicit ScanLabeller(const ScanLabellerConfig& config);
 
   /// The labels that came with the cloud.
@@ -60,6 +61,7 @@ public:
   const std::shared_ptr<const ClassTable>& classTable() const { return class_table_; }
 
 private:
+  void requireObjects() const;
   void checkTable(const OrganizedScan& scan) const;
   void mapIds(OrganizedScan& scan) const;
 

@@ -86,6 +86,10 @@ struct SelectionConfig
 /// at most an eighth of the columns apart, evenly spread over the cloud. 0 where there are hardly any.
 float measureColumnAngle(const LabelledCloud& cloud, float max_range_m);
 
+/// Whether a scan's last column is the first one's neighbour, as `field_of_view` says or, with "auto", by the angle
+/// between columns (measureColumnAngle): they span a turn, or nothing could be measured.
+bool closesOnItself(const std::string& field_of_view, float column_angle, std::uint32_t columns);
+
 /// Finds the thing points of an organised cloud: one pass, linear in the pixels, no allocation once `scan` has grown.
 ///
 /// No return is NaN, infinity, exactly (0, 0, 0) or a range above max_range_m; is_dense is not looked at.

@@ -1,29 +1,31 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/point_types.h"
+#include "lidar_panoptic_clustering/core/thing_scan.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace lidar_panoptic_clustering
 {
 struct GroundLabelerConfig
 {
-  double max_range_m = 300.0;     ///< returns beyond count as no return
-  bool full_turn = true;          ///< the scan closes on itself; false for a sector
-  double ground_height_m = 0.15;  ///< what is lower is ground: a curb's height
-  double max_slope = 0.05;        ///< of the ground against the plane around the sensor, rise over run
-  double link_m = 0.7;            ///< the widest gap between neighbouring returns of one thing: a car's side window
-  double max_height_m = 4.2;      ///< no object is higher: 4.0 m is the limit for vehicles in most of Europe
-  double max_length_m = 20.0;     ///< no object is longer: 18.75 m is the European limit for lorries with trailers
+  double max_range_m = 300.0;          ///< returns beyond count as no return
+  std::string field_of_view = "auto";  ///< or full_turn, sector; see SelectionConfig
+  double ground_height_m = 0.15;       ///< what is lower is ground: a curb's height
+  double max_slope = 0.05;             ///< of the ground against the plane around the sensor, rise over run
+  double link_m = 0.7;         ///< the widest gap between neighbouring returns of one thing: a car's side window
+  double max_height_m = 4.2;   ///< no object is higher: 4.0 m is the limit for vehicles in most of Europe
+  double max_length_m = 20.0;  ///< no object is longer: 18.75 m is the European limit for lorries with trailers
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
     visitor("max_range_m", self.max_range_m, 1.0, 10000.0);
-    visitor("full_turn", self.full_turn);
+    visitor("field_of_view", self.field_of_view, fieldOfViewNames());
     visitor("ground_height_m", self.ground_height_m, 0.02, 1.0);
     visitor("max_slope", self.max_slope, 0.0, 1.0);
     visitor("link_m", self.link_m, 0.05, 5.0);
