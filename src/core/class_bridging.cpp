@@ -26,16 +26,17 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
   sets_.reset(objects.size());
   if (distance > 0.0F && findReaches(objects, table, kRounding * distance))
   {
+    const auto groupOf = [&](std::uint32_t object) { return table[objects[object].class_index].group; };
     cells_.clear(scan.size());
     for (std::uint32_t i = 0; i < scan.size(); ++i)
     {
       const ThingPoint& p = scan.points[i];
-      if (reach_[object_of_thing[i]].contains(p.x, p.y))
-        cells_.add(p.x, p.y, static_cast<std::int32_t>(object_of_thing[i]), distance, i);
+      if (reach_[object_of_thing[i]].contains(p.x, p.y)) cells_.add(p.x, p.y, groupOf(object_of_thing[i]), distance, i);
     }
     cells_.close();
-    stackCells(objects, table);
-    joinCells(objects, table, distance);
+    distance_of_group_.assign(table.groupCount(), distance);
+    cells_.findComponents(distance_of_group_, component_of_cell_);
+    uniteComponents(object_of_thing);
   }
   sets_.flatten(whole_of);
 }
@@ -74,42 +75,12 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
   return found;
 }
 
-void ClassBridging::joinCells(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance)
+void ClassBridging::uniteComponents(const std::vector<std::uint32_t>& object_of_thing)
 {
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
   {
-    const VoxelKey key = cells_.key(cell);
-    const auto object = static_cast<std::uint32_t>(key.z);
-    const ClassInfo& info = table[objects[object].class_index];
-    for (int dy = 0; dy <= PlanarCells::kReach; ++dy)  // half of the cells around: the other half looks here
-      for (int dx = dy == 0 ? 0 : -PlanarCells::kReach; dx <= PlanarCells::kReach; ++dx)
-      {
-        const std::uint32_t stack = stacks_.find({key.x + dx, key.y + dy, info.group});
-        if (stack == VoxelIndex::kNone) continue;
-        for (std::uint32_t other = top_[stack]; other != PlanarCells::kNone; other = below_[other])
-        {
-          const auto other_object = static_cast<std::uint32_t>(cells_.key(other).z);
-          if (sets_.find(object) == sets_.find(other_object)) continue;
-          if (cells_.areCloser(cell, other, distance)) sets_.unite(object, other_object);
-        }
-      }
-  }
-}
-
-/// Lists the cells that lie in one place, of objects of one group.
-void ClassBridging::stackCells(const std::vector<RefinedObject>& objects, const ClassTable& table)
-{
-  stacks_.reset(cells_.size());
-  top_.clear();
-  below_.resize(cells_.size());
-  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-  {
-    const VoxelKey key = cells_.key(cell);
-    const std::uint8_t group = table[objects[static_cast<std::size_t>(key.z)].class_index].group;
-    const std::uint32_t stack = stacks_.insert({key.x, key.y, group});
-    if (stack == top_.size()) top_.push_back(PlanarCells::kNone);
-    below_[cell] = top_[stack];
-    top_[stack] = cell;
+    const std::uint32_t whole = object_of_thing[cells_.firstThing(component_of_cell_[cell])];
+    cells_.forEach(cell, [&](std::uint32_t thing) { sets_.unite(object_of_thing[thing], whole); });
   }
 }
 }  // namespace lidar_panoptic_clustering

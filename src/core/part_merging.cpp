@@ -13,8 +13,9 @@ constexpr float kCellM = 4.0F;       // about a car's length: most objects lie i
 constexpr float kGapInLinks = 2.0F;  // times the class's link distance
 constexpr float kSlack = 1.3F;       // on the usual size, of parts that lie within the link distance
 constexpr float kRounding = 1.001F;  // the outlines' extents are never to exclude what their gap would not
-constexpr int kMostNeighbours = 64;
-constexpr int kMostCells = 256;  // an outline that covers more fits no class
+constexpr int kMostNeighbours = 64, kFewestNeighbours = 4;
+constexpr int kManyPairs = 1 << 18;  // 64 neighbours for as many objects as no street has
+constexpr int kMostCells = 256;      // an outline that covers more fits no class
 
 /// Whether two outlines that far apart can be one object of the class.
 bool fit(const Footprint& a, const Footprint& b, const ClassInfo& info, float squared_gap)
@@ -25,6 +26,11 @@ bool fit(const Footprint& a, const Footprint& b, const ClassInfo& info, float sq
   Footprint both = a;
   both.add(b);
   return both.fits(slack * info.length_m, slack * info.width_m);
+}
+
+int neighboursOf(std::size_t objects)
+{
+  return std::clamp(kManyPairs / static_cast<int>(objects + 1), kFewestNeighbours, kMostNeighbours);
 }
 
 std::int32_t cellOf(float metres)
@@ -72,12 +78,13 @@ void PartMerger::collectPairs(const std::vector<RefinedObject>& objects, const C
 {
   pairs_.clear();
   seen_.assign(objects.size(), kNone);
+  const int most_neighbours = neighboursOf(objects.size());
   for (std::uint32_t a = 0; a < objects.size(); ++a)
   {
     const ClassInfo& info = table[objects[a].class_index];
     const Footprint& mine = objects[a].footprint;
     const float reach = kGapInLinks * info.link_distance_m;
-    int left = kMostNeighbours;
+    int left = most_neighbours;
     visitCells(mine.minX() - reach, mine.maxX() + reach, mine.minY() - reach, mine.maxY() + reach,
                [&](const VoxelKey& key)
                {
@@ -112,7 +119,7 @@ bool PartMerger::isParted(const std::vector<RefinedObject>& objects, std::uint32
              {
                const std::uint32_t cell = grid_.find(key);
                if (cell == VoxelIndex::kNone) return;
-               int left = kMostNeighbours;
+               int left = neighboursOf(objects.size());
                for (std::uint32_t e = first_[cell]; e != kNone && !parted && left > 0; e = entries_[e].next, --left)
                {
                  const std::uint32_t c = entries_[e].object;

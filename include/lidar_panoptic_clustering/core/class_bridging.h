@@ -16,7 +16,7 @@ namespace lidar_panoptic_clustering
 ///
 /// Two objects are one when two points of theirs are closer than `distance` in bird's-eye view. Outlines tell which
 /// objects can be that close, and only their points where the other's outline is near are compared: n log n in the
-/// objects and linear in those points at usual densities. Keeps its memory.
+/// objects and in the cells of those points. Keeps its memory.
 class ClassBridging
 {
 public:
@@ -35,15 +35,13 @@ private:
   };
 
   bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
-  void joinCells(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
-  void stackCells(const std::vector<RefinedObject>& objects, const ClassTable& table);
+  void uniteComponents(const std::vector<std::uint32_t>& object_of_thing);
 
   std::vector<std::uint32_t> order_;  ///< objects by least x
   std::vector<Reach> reach_;          ///< by object
-  PlanarCells cells_;                 ///< a layer an object
-  VoxelIndex stacks_;                 ///< places of cells, a layer a group
-  std::vector<std::uint32_t> top_;    ///< by stack: its first cell
-  std::vector<std::uint32_t> below_;  ///< by cell: the next of its stack
+  PlanarCells cells_;                 ///< of all objects, a layer a group
+  std::vector<float> distance_of_group_;
+  std::vector<std::uint32_t> component_of_cell_;
   DisjointSets sets_;
 };
 }  // namespace lidar_panoptic_clustering
