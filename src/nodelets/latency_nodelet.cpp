@@ -9,6 +9,8 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>
+#include <ros/callback_queue.h>
+#include <ros/spinner.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include <chrono>
@@ -56,7 +58,10 @@ struct LatencyConfig
 /// one machine. Where the cluster nodelet runs in another process, the output callback is where any consumer of a third
 /// process would have its own: the clouds are serialised, sent and read twice, once each way.
 ///
-/// A callback holds up no other: they run in the manager's threads side by side. Parameters: those of LatencyConfig.
+/// The output waits for a thread of the manager as for any nodelet there, but behind no other callback of this one; the
+/// input has a thread of its own, as a busy manager would make it late and the scan's way look short.
+///
+/// Parameters: those of LatencyConfig.
 class LatencyNodelet : public nodelet::Nodelet
 {
 public:
@@ -65,6 +70,7 @@ public:
     // these wait for their callback under way
     watchdog_.stop();
     for (auto* subscriber : {&input_, &output_, &stages_}) subscriber->shutdown();
+    input_spinner_.stop();
     if (report_) finish();
   }
 
@@ -92,7 +98,8 @@ private:
     { receiveStages(event); };
     stages_ = nh.subscribe<Stages>("stages", kQueue, on_stages, {}, ros::TransportHints().tcpNoDelay());
     input_ = subscribeChecked<LabelledCloud>(
-        nh, "input", kQueue, [this](const auto& cloud) { receiveInput(*cloud); }, onError());
+        nh, "input", kQueue, [this](const auto& cloud) { receiveInput(*cloud); }, onError(), &input_queue_);
+    input_spinner_.start();
     watchdog_ =
         getNodeHandle().createWallTimer(ros::WallDuration(0.1), [this](const ros::WallTimerEvent&) { watch(); });
   }
@@ -172,6 +179,8 @@ private:
   std::string graph_ = "none", algorithm_ = "none";
   ros::WallTime last_scan_;
 
+  ros::CallbackQueue input_queue_;
+  ros::AsyncSpinner input_spinner_{1, &input_queue_};
   ros::Subscriber input_, output_, stages_;
   ros::WallTimer watchdog_;
 };
