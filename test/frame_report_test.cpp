@@ -39,6 +39,7 @@ TEST(Quantile, IsTheNearestRank)
   EXPECT_EQ(quantileOf({4.0, 1.0, 3.0, 2.0}, 0.5), 2.0);
   EXPECT_EQ(quantileOf({3.0, 1.0, 2.0}, 0.5), 2.0);
   EXPECT_EQ(quantileOf({3.0, 1.0, 2.0}, 1.0), 3.0);
+  EXPECT_EQ(quantileOf({3.0, 1.0, 2.0}, 0.0), 1.0);
   std::vector<double> twenty;
   for (int i = 20; i > 0; --i) twenty.push_back(i);
   EXPECT_EQ(quantileOf(twenty, 0.95), 19.0);

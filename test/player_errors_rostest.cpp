@@ -9,6 +9,13 @@ TEST_F(Player, EndsAtTheLastScan)
   EXPECT_EQ(cloudsUntil("played 3 scans"), 3U);
 }
 
+TEST_F(Player, EndsAfterAsManyScansAsAskedFor)
+{
+  ros::param::set(name_ + "/loop", true);
+  ros::param::set(name_ + "/frames", 5);  // the sequence has three
+  EXPECT_EQ(cloudsUntil("played 5 scans"), 5U);
+}
+
 TEST_F(Player, ShortScanEndsItOrIsSkippedAsConfigured)
 {
   writeFile(file("velodyne", 1, ".bin"), scanPoints(1), 100);

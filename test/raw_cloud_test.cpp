@@ -219,6 +219,65 @@ TEST(RawCloud, ReadsPanopticPoints)
             "rgb float32");
 }
 
+/// As another process of this package sends them: 32 bytes a point, what is no field of it undefined.
+RawMessage messageAsInMemory(std::uint32_t intensity_offset, std::uint32_t label_offset, std::uint32_t row_padding)
+{
+  RawMessage message(
+      2, 300,
+      {rawField("x", 0, kF32), rawField("y", 4, kF32), rawField("z", 8, kF32),
+       rawField("intensity", intensity_offset, kF32), rawField("label", label_offset, NumberType::kUint32),
+       rawField("instance", 24, NumberType::kUint32), rawField("rgb", 28, NumberType::kUint32)},
+      32, row_padding);
+  for (unsigned r = 0; r < 2; ++r)
+    for (unsigned c = 0; c < 300; ++c)
+    {
+      message.setPoint(r, c, c, r, -1);
+      message.set(r, c, "intensity", 0.5 * c);
+      message.set(r, c, "label", 2.0 * c + r);
+      message.set(r, c, "instance", c == 299 ? 4294967295.0 : 3.0 * c);  // the last one is no instance
+      message.set(r, c, "rgb", 5.0 * c);
+    }
+  return message;
+}
+
+template <class Cloud>
+void expectAsInMemory(const Cloud& cloud)
+{
+  ASSERT_EQ(cloud.points.size(), 600U);
+  for (unsigned r = 0; r < 2; ++r)
+    for (unsigned c = 0; c < 300; ++c)
+    {
+      const auto& p = cloud.points[r * 300 + c];
+      EXPECT_EQ(p.getVector4fMap(), Eigen::Vector4f(static_cast<float>(c), static_cast<float>(r), -1.0F, 1.0F));
+      EXPECT_EQ(p.intensity, 0.5F * static_cast<float>(c));
+      EXPECT_EQ(p.label, 2 * c + r);
+    }
+}
+
+TEST(RawCloud, ReadsPointsThatLieAsInMemoryOrNearlySo)
+{
+  for (const std::uint32_t padding : {0U, 7U})
+    for (const auto& [intensity, label] : {std::pair(16U, 20U), std::pair(20U, 16U), std::pair(12U, 20U)})
+    {
+      SCOPED_TRACE(testing::Message() << padding << ' ' << intensity << ' ' << label);
+      const auto message = messageAsInMemory(intensity, label, padding);
+      expectAsInMemory(readSimple(message.view()));
+      PanopticCloud cloud;
+      readPanoptic(message.view(), cloud);
+      expectAsInMemory(cloud);
+      for (unsigned i = 0; i < 600; ++i)
+      {
+        const unsigned column = i % 300;
+        EXPECT_EQ(cloud.points[i].instance, column == 299 ? 0 : 3 * column);
+        EXPECT_EQ(cloud.points[i].rgb, 5 * column);
+      }
+      LabelledCloud turned;
+      readLabelled(message.view(), LabelledFields(), turned, RowOrder::kTransposed);
+      ASSERT_EQ(turned.points.size(), 600U);
+      EXPECT_EQ(turned.points[2 * 7 + 1].label, 2 * 7 + 1U);
+    }
+}
+
 TEST(RawCloud, EmptyCloudsKeepTheirShape)
 {
   auto message = simpleMessage();

@@ -3,6 +3,7 @@
 #include "nodelets/cloud_subscription.h"
 #include "nodelets/instance_markers.h"
 #include "nodelets/parameter_server.h"
+#include "nodelets/stage_message.h"
 
 #include <pcl_conversions/pcl_conversions.h>
 
@@ -145,19 +146,8 @@ void ClusterNodelet::publishStages(const pcl::PCLHeader& header, const StreamDia
 {
   const auto array = boost::make_shared<diagnostic_msgs::DiagnosticArray>();
   array->header = pcl_conversions::fromPCL(header);
-  array->status.resize(1);
-  auto& status = array->status[0];
-  status.name = getName();
-  status.hardware_id = algorithm_;
-  const auto add = [&status](const std::string& key, const auto& value)
-  {
-    status.values.emplace_back();
-    status.values.back().key = key;
-    status.values.back().value = std::to_string(value);
-  };
-  add("things", pipeline_->things().size());
-  add("instances", pipeline_->instances().count());
-  for (const auto& [stage, milliseconds] : stages) add(stage + "_ms", milliseconds);
+  array->status.push_back(
+      stageMessage(getName(), algorithm_, pipeline_->things().size(), pipeline_->instances().count(), stages));
   stages_.publish(array);
 }
 

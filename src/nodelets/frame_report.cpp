@@ -1,22 +1,15 @@
 #include "nodelets/frame_report.h"
 
+#include "nodelets/format_text.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
-template <class... Values>
-std::string format(const char* pattern, Values... values)
-{
-  char text[256];
-  std::snprintf(text, sizeof(text), pattern, values...);
-  return text;
-}
-
 double stageMilliseconds(const FrameFigures& figures, const std::string& stage)
 {
   for (const auto& [name, milliseconds] : figures.stages)
@@ -26,7 +19,7 @@ double stageMilliseconds(const FrameFigures& figures, const std::string& stage)
 
 std::string counts(double points, double things, double instances)
 {
-  return format(" %8.0f %8.0f %10.0f", points, things, instances);
+  return formatText(" %8.0f %8.0f %10.0f", points, things, instances);
 }
 
 template <class Value>
@@ -79,13 +72,13 @@ std::string FrameReport::add(const std::string& algorithm, FrameFigures figures)
   if (stages_.empty())
   {
     for (const auto& stage : figures.stages) stages_.push_back(stage.first);
-    line = head(format("%6s %-13s", "frame", "algorithm")) + "   [ms a stage]\n";
+    line = head(formatText("%6s %-13s", "frame", "algorithm")) + "   [ms a stage]\n";
   }
-  line += format("%6zu %-13s", series->frames.size() + 1, algorithm.c_str());
+  line += formatText("%6zu %-13s", series->frames.size() + 1, algorithm.c_str());
   line += counts(static_cast<double>(figures.points), static_cast<double>(figures.things),
                  static_cast<double>(figures.instances));
-  for (const auto& stage : stages_) line += format(" %8.2f", stageMilliseconds(figures, stage));
-  line += format(" %8.2f\n", figures.totalMilliseconds());
+  for (const auto& stage : stages_) line += formatText(" %8.2f", stageMilliseconds(figures, stage));
+  line += formatText(" %8.2f\n", figures.totalMilliseconds());
   series->frames.push_back(std::move(figures));
   return line;
 }
@@ -107,15 +100,16 @@ std::size_t FrameReport::dropped(const Series& series) const
 
 std::string FrameReport::head(const std::string& leading) const
 {
-  std::string line = leading + format(" %8s %8s %10s", "points", "things", "instances");
-  for (const auto& stage : stages_) line += format(" %8s", stage.c_str());
-  return line + format(" %8s", "total");
+  std::string line = leading + formatText(" %8s %8s %10s", "points", "things", "instances");
+  for (const auto& stage : stages_) line += formatText(" %8s", stage.c_str());
+  return line + formatText(" %8s", "total");
 }
 
 std::string FrameReport::summary() const
 {
   std::string text = "\nSummary: means of points, things and instances; medians of the milliseconds a stage\n";
-  text += head(format("%-13s %6s %7s", "algorithm", "frames", "dropped")) + format(" %8s %8s\n", "95 %", "longest");
+  text +=
+      head(formatText("%-13s %6s %7s", "algorithm", "frames", "dropped")) + formatText(" %8s %8s\n", "95 %", "longest");
   std::size_t fewest = series_.empty() ? 0 : series_.front().frames.size();
   for (const auto& series : series_)
   {
@@ -123,23 +117,23 @@ std::string FrameReport::summary() const
     fewest = std::min(fewest, series.frames.size());
   }
   if (limit_ == 0) return text + "done: ended from outside, as no number of frames was set\n";
-  return text + format(complete() ? "done: %zu of %zu frames of each algorithm\n"
-                                  : "ended early: %zu of %zu frames of the slowest algorithm\n",
-                       fewest, limit_);
+  return text + formatText(complete() ? "done: %zu of %zu frames of each algorithm\n"
+                                      : "ended early: %zu of %zu frames of the slowest algorithm\n",
+                           fewest, limit_);
 }
 
 std::string FrameReport::summaryOf(const Series& series) const
 {
   const auto& frames = series.frames;
-  std::string line = format("%-13s %6zu %7zu", series.algorithm.c_str(), frames.size(), dropped(series));
+  std::string line = formatText("%-13s %6zu %7zu", series.algorithm.c_str(), frames.size(), dropped(series));
   line += counts(meanOf(valuesOf(frames, [](const auto& f) { return f.points; })),
                  meanOf(valuesOf(frames, [](const auto& f) { return f.things; })),
                  meanOf(valuesOf(frames, [](const auto& f) { return f.instances; })));
   for (const auto& stage : stages_)
-    line += format(" %8.2f",
-                   quantileOf(valuesOf(frames, [&stage](const auto& f) { return stageMilliseconds(f, stage); }), 0.5));
+    line += formatText(
+        " %8.2f", quantileOf(valuesOf(frames, [&stage](const auto& f) { return stageMilliseconds(f, stage); }), 0.5));
   const auto totals = valuesOf(frames, [](const auto& f) { return f.totalMilliseconds(); });
   return line +
-         format(" %8.2f %8.2f %8.2f\n", quantileOf(totals, 0.5), quantileOf(totals, 0.95), quantileOf(totals, 1.0));
+         formatText(" %8.2f %8.2f %8.2f\n", quantileOf(totals, 0.5), quantileOf(totals, 0.95), quantileOf(totals, 1.0));
 }
 }  // namespace lidar_panoptic_clustering

@@ -18,8 +18,8 @@ struct FrameFigures
   double totalMilliseconds() const;
 };
 
-/// The value below or at which the share `quantile` (0 < quantile <= 1) of the values lies (nearest rank): 0.5 is the
-/// lower median, 1 the maximum. 0 for no values.
+/// The value below or at which the share `quantile` (0 to 1) of the values lies (nearest rank): 0 is the minimum, 0.5
+/// the lower median, 1 the maximum. 0 for no values.
 double quantileOf(std::vector<double> values, double quantile);
 
 /// Prints the frames of one or several algorithms as lines of a table, and sums them up.

@@ -4,6 +4,8 @@
 #include "nodelets/cloud_subscription.h"
 #include "nodelets/frame_report.h"
 #include "nodelets/parameter_server.h"
+#include "nodelets/report_output.h"
+#include "nodelets/stage_message.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nodelet/nodelet.h>
@@ -13,8 +15,6 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <fstream>
-#include <iostream>
 #include <map>
 #include <memory>
 #include <stdexcept>
@@ -53,21 +53,6 @@ std::size_t countReturns(const PanopticCloud& cloud)
     if (std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F))
       ++returns;
   return returns;
-}
-
-/// Reads what ClusterNodelet::publishStages() wrote.
-FrameFigures readFigures(const diagnostic_msgs::DiagnosticStatus& status)
-{
-  const std::string unit = "_ms";
-  FrameFigures figures;
-  for (const auto& pair : status.values)
-  {
-    if (pair.key == "things") figures.things = std::stoul(pair.value);
-    if (pair.key == "instances") figures.instances = std::stoul(pair.value);
-    if (pair.key.size() > unit.size() && pair.key.compare(pair.key.size() - unit.size(), unit.size(), unit) == 0)
-      figures.stages.emplace_back(pair.key.substr(0, pair.key.size() - unit.size()), std::stod(pair.value));
-  }
-  return figures;
 }
 }  // namespace
 
@@ -148,15 +133,9 @@ private:
     applyParameters(config_, readParameters(getPrivateNodeHandle(), describeParameters(config_)));
     algorithms_ = config_.algorithm == "all" ? algorithmNames() : std::vector<std::string>{config_.algorithm};
     for (const auto& algorithm : algorithms_) tracks_[algorithm];
-    if (!config_.report.empty())
-    {
-      file_.open(config_.report, std::ios::app);
-      if (!file_) throw std::runtime_error("cannot write the report to '" + config_.report + "'");
-    }
+    output_.open(config_.report);
     report_ = std::make_unique<FrameReport>(algorithms_, static_cast<std::size_t>(config_.frames));
   }
-
-  std::ostream& lines() { return file_.is_open() ? file_ : std::cout; }
 
   void receiveCloud(const std::string& algorithm, const CloudPtr& cloud)
   {
@@ -175,13 +154,13 @@ private:
     const CloudPtr cloud = found->second;
     track.waiting.erase(track.waiting.begin(), std::next(found));
 
-    FrameFigures figures = readFigures(message.status.front());
+    FrameFigures figures = readStageMessage(message.status.front());
     figures.stamp_us = stamp;
     figures.points = countReturns(*cloud);
     if (!config_.picture.empty()) keep(track, stamp, {cloud, figures.totalMilliseconds()});
     const std::string line = report_->add(algorithm, std::move(figures));
     if (line.empty()) return;
-    lines() << line << std::flush;
+    output_.print(line);
     last_frame_ = ros::WallTime::now();
     if (report_->complete()) finish(), ros::requestShutdown();
   }
@@ -210,7 +189,7 @@ private:
   void finish()
   {
     if (!config_.picture.empty()) draw();
-    lines() << report_->summary() << std::flush;
+    output_.print(report_->summary());
     report_.reset();
   }
 
@@ -241,7 +220,7 @@ private:
   static constexpr std::size_t kRecent = 12;
 
   ReportConfig config_;
-  std::ofstream file_;
+  ReportOutput output_;
   std::unique_ptr<FrameReport> report_;  ///< gone once it is finished
   std::vector<std::string> algorithms_;
   std::map<std::string, Track> tracks_;  ///< by algorithm

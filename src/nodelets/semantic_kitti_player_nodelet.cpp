@@ -27,6 +27,7 @@ struct PlayerConfig
 {
   double rate_hz = 10.0;
   bool loop = true;
+  int frames = 0;                ///< scans to play, 0 for no end
   int wait_for_subscribers = 1;  ///< of ~output, before the first scan
   std::string on_error = "stop";
   std::string stamps = "now";  ///< or the data set's times, counted from the first scan's
@@ -37,6 +38,7 @@ struct PlayerConfig
   {
     visitor("rate_hz", self.rate_hz, 0.01, 1000.0);
     visitor("loop", self.loop);
+    visitor("frames", self.frames, 0, 2147483647);
     visitor("wait_for_subscribers", self.wait_for_subscribers, 0, 1000);
     visitor("on_error", self.on_error, std::vector<std::string>{"stop", "skip"});
     visitor("stamps", self.stamps, std::vector<std::string>{"now", "dataset"});
@@ -138,6 +140,8 @@ private:
       if (pass_ == 0) NODELET_ERROR("scan %s not played: %s", sequence_->scanName(next_).c_str(), error.what());
       if (config_.on_error == "stop") return stop("because of the error above");
     }
+    if (config_.frames > 0 && played_ >= static_cast<std::size_t>(config_.frames))
+      return stop("after as many scans as asked for");
     if (++next_ < sequence_->size()) return;
     next_ = 0, ++pass_;
     if (!config_.loop || played_ == 0) stop("at its end");

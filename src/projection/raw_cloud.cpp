@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/projection/raw_cloud.h"
 
+#include "projection/point_reader.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstring>
@@ -137,37 +139,6 @@ void resize(const RawCloud& raw, RowOrder order, Cloud& cloud)
   cloud.height = as_sent ? raw.height : raw.width;
   cloud.is_dense = false;
 }
-
-/// What LabelledPoint and PanopticPoint have in common.
-class PointReader
-{
-public:
-  PointReader(const RawCloud& raw, const LabelledFields& names)
-      : x_(*findField(raw, names.x)),
-        y_(*findField(raw, names.y)),
-        z_(*findField(raw, names.z)),
-        label_(*findField(raw, names.label)),
-        intensity_(findField(raw, names.intensity))
-  {
-  }
-
-  template <class Point>
-  void read(const PointRun& run, Point* out) const
-  {
-    readFloats(run, x_, &out->x, sizeof(Point));
-    readFloats(run, y_, &out->y, sizeof(Point));
-    readFloats(run, z_, &out->z, sizeof(Point));
-    readIds(run, label_, &out->label, sizeof(Point));
-    if (intensity_ != nullptr)
-      readFloats(run, *intensity_, &out->intensity, sizeof(Point));
-    else
-      for (std::size_t i = 0; i < run.count; ++i) out[i].intensity = 0.0F;
-  }
-
-private:
-  const RawField &x_, &y_, &z_, &label_;
-  const RawField* intensity_;
-};
 }  // namespace
 
 std::string describeFields(const RawCloud& cloud)
@@ -261,7 +232,7 @@ void readLabelled(const RawCloud& raw, const LabelledFields& names, LabelledClou
 {
   checkLayout(raw, {names.x, names.y, names.z, names.label}, {names.intensity});
   resize(raw, order, cloud);
-  const PointReader reader(raw, names);
+  const PointReader<LabelledPoint> reader(raw, names);
   forEachRun(raw, order, [&](const PointRun& run, std::size_t first) { reader.read(run, &cloud.points[first]); });
 }
 
@@ -270,7 +241,7 @@ void readPanoptic(const RawCloud& raw, PanopticCloud& cloud)
   const LabelledFields names;
   checkLayout(raw, {names.x, names.y, names.z, names.label, "instance"}, {names.intensity, "rgb"});
   resize(raw, RowOrder::kAsSent, cloud);
-  const PointReader reader(raw, names);
+  const PointReader<PanopticPoint> reader(raw, names);
   const RawField& instance = *findField(raw, "instance");
   const RawField* rgb = findField(raw, "rgb");
   RawField rgb_bits;
