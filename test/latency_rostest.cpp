@@ -62,14 +62,17 @@ void expectPlausible(const Table& table)
     SCOPED_TRACE(measure);
     ASSERT_EQ(values.size(), 6U);
     EXPECT_TRUE(std::is_sorted(values.begin(), values.end()));
-    EXPECT_GT(values.back(), 0.0);
+    EXPECT_GT(values.front(), 0.0);
     EXPECT_LT(values.back(), 30000.0);
   }
-  // a scan that came out is older than the work on it took, and medians keep the order
-  const auto& age = table.percentiles.at("stamp");
-  const auto& work = table.percentiles.at("the");
-  EXPECT_GT(age.front(), 0.0);
-  for (std::size_t i = 0; i < age.size(); ++i) EXPECT_GE(age[i], work[i]) << i;
+  // what is in a longer way takes less
+  const auto &age = table.percentiles.at("stamp"), &latency = table.percentiles.at("input"),
+             &work = table.percentiles.at("the");
+  for (std::size_t i = 0; i < age.size(); ++i)
+  {
+    EXPECT_GE(age[i], latency[i] - 0.02) << i;  // two clocks, and a stamp in whole microseconds
+    EXPECT_GE(latency[i], work[i]) << i;
+  }
 }
 
 class Latency : public Graph

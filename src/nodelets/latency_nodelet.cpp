@@ -9,8 +9,7 @@
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>
-#include <ros/callback_queue.h>
-#include <ros/spinner.h>
+#include <ros/callback_queue_interface.h>
 #include <pluginlib/class_list_macros.hpp>
 
 #include <chrono>
@@ -18,6 +17,7 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -40,6 +40,19 @@ struct LatencyConfig
     visitor("report", self.report, std::vector<std::string>{});
   }
 };
+
+/// Runs callbacks where they are added to it. For a subscriber that is the thread of a publisher in the same process,
+/// in the midst of publish(), or the transport's; roscpp has unsubscribing wait for it.
+class ImmediateQueue : public ros::CallbackQueueInterface
+{
+public:
+  void addCallback(const ros::CallbackInterfacePtr& callback, std::uint64_t) override
+  {
+    // another publisher's message is in the callback
+    while (callback->call() == ros::CallbackInterface::TryAgain) std::this_thread::yield();
+  }
+  void removeByID(std::uint64_t) override {}
+};
 }  // namespace
 
 /// Measures how long scans take through a cluster nodelet, and prints percentiles of it; then it ends the process it
@@ -47,8 +60,7 @@ struct LatencyConfig
 ///
 /// ~input and ~output: what the cluster nodelet gets (LabelledCloud) and gives (PanopticCloud); ~stages: its topic of
 /// that name. For each scan that came out, told by its stamp:
-/// - input to output callback: from the begin of this nodelet's callback for the input to that for the output, by a
-///   steady clock.
+/// - input to output callback: from the begin of the input's callback to that of the output's, by a steady clock.
 /// - stamp to output callback: the age of the output by the ROS clock. It includes all that lies between the source's
 ///   setting of the stamp and the input's callback; where the stamp is the time of publication, as in latency.launch,
 ///   that is the source's serialisation for another process.
@@ -58,8 +70,8 @@ struct LatencyConfig
 /// one machine. Where the cluster nodelet runs in another process, the output callback is where any consumer of a third
 /// process would have its own: the clouds are serialised, sent and read twice, once each way.
 ///
-/// The output waits for a thread of the manager as for any nodelet there, but behind no other callback of this one; the
-/// input has a thread of its own, as a busy manager would make it late and the scan's way look short.
+/// The output waits for a thread of the manager as for any nodelet there, but behind no other callback of this one. The
+/// input does not wait: were its callback late, on a busy machine, the scan's way would look short.
 ///
 /// Parameters: those of LatencyConfig.
 class LatencyNodelet : public nodelet::Nodelet
@@ -70,7 +82,6 @@ public:
     // these wait for their callback under way
     watchdog_.stop();
     for (auto* subscriber : {&input_, &output_, &stages_}) subscriber->shutdown();
-    input_spinner_.stop();
     if (report_) finish();
   }
 
@@ -99,7 +110,6 @@ private:
     stages_ = nh.subscribe<Stages>("stages", kQueue, on_stages, {}, ros::TransportHints().tcpNoDelay());
     input_ = subscribeChecked<LabelledCloud>(
         nh, "input", kQueue, [this](const auto& cloud) { receiveInput(*cloud); }, onError(), &input_queue_);
-    input_spinner_.start();
     watchdog_ =
         getNodeHandle().createWallTimer(ros::WallDuration(0.1), [this](const ros::WallTimerEvent&) { watch(); });
   }
@@ -179,8 +189,7 @@ private:
   std::string graph_ = "none", algorithm_ = "none";
   ros::WallTime last_scan_;
 
-  ros::CallbackQueue input_queue_;
-  ros::AsyncSpinner input_spinner_{1, &input_queue_};
+  ImmediateQueue input_queue_;
   ros::Subscriber input_, output_, stages_;
   ros::WallTimer watchdog_;
 };
