@@ -95,6 +95,9 @@ TEST(SensorLaunch, NeedsNoLabels)
 int main(int argc, char** argv)
 {
   ros::init(argc, argv, "sensor_launch");
-  const nodelet::Loader manager;
-  return lidar_panoptic_clustering::runGraphTests(argc, argv, "sensor_launch");
+  nodelet::Loader manager;
+  const int result = lidar_panoptic_clustering::runGraphTests(argc, argv, "sensor_launch");
+  // at its end the loader looks up the nodelets of broken bonds in a list it has freed
+  for (const std::string& name : manager.listLoadedNodelets()) manager.unload(name);
+  return result;
 }
