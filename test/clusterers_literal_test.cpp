@@ -78,7 +78,8 @@ TEST(Depth, columnsLinkOverOtherRows)
 TEST(Depth, turnCloses)
 {
   const LabelledCloud cloud = line({ahead(0), ahead(1, 30.0F), ahead(2)});
-  EXPECT_EQ(instancesOf(runRule("depth", cloud, {{"max_gap_px", 1}, {"field_of_view", std::string("full_turn")}})), (Ids{1, 2, 1}));
+  EXPECT_EQ(instancesOf(runRule("depth", cloud, {{"max_gap_px", 1}, {"field_of_view", std::string("full_turn")}})),
+            (Ids{1, 2, 1}));
   EXPECT_EQ(split("depth", cloud, {{"max_gap_px", 1}}), (Ids{1, 2, 3}));
 }
 

@@ -81,8 +81,8 @@ enum class Rings
   kNone,
   kFromTheTop,
   kFromTheBottom,
-  kInBlocks,    ///< from the top: 0, rows / 2, 1, rows / 2 + 1 ...
-  kAsFired      ///< every other beam downwards from the top, in between the others: 0, 2, 4 ... 5, 3, 1
+  kInBlocks,  ///< from the top: 0, rows / 2, 1, rows / 2 + 1 ...
+  kAsFired    ///< every other beam downwards from the top, in between the others: 0, 2, 4 ... 5, 3, 1
 };
 
 /// The pixels of an image as one row of points in the order given: x y z label, and ring uint16 where it is numbered.

@@ -32,8 +32,9 @@ void readLabelImage(const RawImage& image, std::uint32_t rows, std::uint32_t col
 /// Reads the class ids of a second cloud that has the points of `cloud` in the same order: as many rows and columns, or
 /// all in one row. Writes them by the points' row-major index.
 ///
-/// `label_field`: any number type, see readIds(); empty for the first of the usual names, see FieldNames. Throws std::invalid_argument when the sizes differ, the field is
-/// missing, or as checkLayout() does. Linear in the points; the vector's memory is reused.
+/// `label_field`: any number type, see readIds(); empty for the first of the usual names, see FieldNames. Throws
+/// std::invalid_argument when the sizes differ, the field is missing, or as checkLayout() does. Linear in the points;
+/// the vector's memory is reused.
 void readLabelCloud(const RawCloud& labels, const std::string& label_field, const RawCloud& cloud,
                     std::vector<std::uint32_t>& label_of_point);
 }  // namespace lidar_panoptic_clustering
