@@ -16,9 +16,6 @@ namespace lidar_panoptic_clustering
 class PlanarCells
 {
 public:
-  static constexpr int kReach = 2;
-  static constexpr std::uint32_t kNone = VoxelIndex::kNone;
-
   /// Begins anew, with room for `capacity` points.
   void clear(std::size_t capacity);
   /// To be called for each point, then close(). `distance` is the diagonal of the layer's cells [m], above 0.
@@ -26,8 +23,6 @@ public:
   void close();
 
   std::uint32_t size() const { return static_cast<std::uint32_t>(ranges_.size()); }
-  const VoxelKey& key(std::uint32_t cell) const { return index_[cell]; }
-  std::uint32_t find(const VoxelKey& key) const { return index_.find(key); }
 
   /// The things of a cell, in no order that means anything.
   template <class Visit>
@@ -39,18 +34,18 @@ public:
   /// The cell of the point that was the k-th to be added.
   std::uint32_t cellOf(std::size_t k) const { return cell_of_added_[k]; }
 
-  /// Whether a point of one cell is closer than `distance` to one of the other; `distance` is what both cells' points
-  /// were added with. Linear in their points, n log n for those of a cell at its first difficult comparison.
-  bool areCloser(std::uint32_t cell_a, std::uint32_t cell_b, float distance);
-
   /// The components of "closer than the layer's distance" within each layer, by cell: each cell's value is the first
-  /// cell of its component. `distance_of_layer`: what add() was given. n log n in the cells.
+  /// cell of its component. `distance_of_layer`: what add() was given. n log n in the cells; two cells are compared in
+  /// time linear in their points, n log n for those of a cell at its first difficult comparison.
   void findComponents(const std::vector<float>& distance_of_layer, std::vector<std::uint32_t>& component_of_cell);
 
-  /// Points looked at by areCloser() since clear(), for tests that bound the work.
+  /// Points looked at by these comparisons since clear(), for tests that bound the work.
   std::size_t pointsLookedAt() const { return looked_at_; }
 
 private:
+  static constexpr int kReach = 2;
+  static constexpr std::uint32_t kNone = VoxelIndex::kNone;
+
   struct Point
   {
     float x, y;
@@ -79,6 +74,7 @@ private:
   };
 
   void joinNeighbours(const std::vector<float>& distance_of_layer, int reach);
+  bool areCloser(std::uint32_t cell_a, std::uint32_t cell_b, float distance);
   bool isAnyPairCloser(Range a, Range b, float squared_distance);
   bool isGreedyPairCloser(Range a, Range b, const Box& box_b, float squared_distance);
   bool reachesOver(std::uint32_t low, std::uint32_t high, bool along_y, float distance);
