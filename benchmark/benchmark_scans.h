@@ -2,9 +2,9 @@
 
 #include "recorded_data.h"
 
-#include "lidar_panoptic_clustering/clusterers/factory.h"
-#include "lidar_panoptic_clustering/core/frame_pipeline.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
+#include "lidar_panoptic_clustering/pipeline/factory.h"
+#include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/projection/point_projection.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
 

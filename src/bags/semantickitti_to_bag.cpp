@@ -1,12 +1,8 @@
 #include "bags/sequence_bag.h"
-#include "tools/support/interrupt.h"
+#include "tools/support/program.h"
 #include "tools/support/progress.h"
 
-#include <boost/program_options.hpp>
-
 #include <cstdio>
-#include <cstdlib>
-#include <iostream>
 #include <optional>
 
 namespace po = boost::program_options;
@@ -31,40 +27,29 @@ Example: semantickitti_to_bag --dataset kitti/dataset --sequence 08 --output 08.
 
 Options)";
 
-po::options_description describeOptions()
+Options describeOptions()
 {
   const SequenceBagConfig config;
-  const auto text = [](const char* name, const std::string& value)
-  { return po::value<std::string>()->value_name(name)->default_value(value); };
-  po::options_description options(kUsage, 110, 60);
-  options.add_options()("help,h", "this text");
-  options.add_options()("dataset", po::value<std::string>()->value_name("DIR"),
-                        "folder that holds sequences/SS/velodyne");
-  options.add_options()("sequence", text("SS", config.sequence), "which of its sequences");
-  options.add_options()("semantics", text("DIR", ""),
+  Options options = describeProgram(kUsage);
+  options.add_options()("dataset", textValue("DIR"), "folder that holds sequences/SS/velodyne");
+  options.add_options()("sequence", textValue("SS", config.sequence), "which of its sequences");
+  options.add_options()("semantics", textValue("DIR", ""),
                         "take the points' classes from DIR/sequences/SS/predictions instead of the true ones");
-  options.add_options()("output", po::value<std::string>()->value_name("FILE"), "the bag");
+  options.add_options()("output", textValue("FILE"), "the bag");
   options.add_options()("first", po::value<long>()->value_name("N")->default_value(0), "first scan");
   options.add_options()("count", po::value<long>()->value_name("N"), "how many scans; otherwise all from the first on");
-  options.add_options()("compression", text("NAME", config.compression), "none, lz4 or bz2");
+  options.add_options()("compression", textValue("NAME", config.compression), "none, lz4 or bz2");
   options.add_options()("start",
                         po::value<double>()->value_name("SECONDS")->default_value(config.start_s, "1316995200"),
                         "the stamp of the sequence's time 0");
-  options.add_options()("frame-id", text("NAME", config.frame_id), "the sensor's frame");
-  options.add_options()("columns", po::value<int>()->value_name("N")->default_value(config.projection.columns),
-                        "width of the ground truth's range image");
-  options.add_options()("class-table", text("FILE", config.class_table),
+  options.add_options()("frame-id", textValue("NAME", config.frame_id), "the sensor's frame");
+  options.add_options()("columns", numberValue(config.projection.columns), "width of the ground truth's range image");
+  options.add_options()("class-table", textValue("FILE", config.class_table),
                         "which classes are things: a YAML file or the name of a table that ships with the package");
   return options;
 }
 
-const std::string& required(const po::variables_map& given, const char* option)
-{
-  if (given.count(option) == 0) throw std::invalid_argument(std::string("--") + option + " is missing; see --help");
-  return given[option].as<std::string>();
-}
-
-std::uint64_t number(const po::variables_map& given, const char* option, long least)
+std::uint64_t number(const Given& given, const char* option, long least)
 {
   const long value = given[option].as<long>();
   if (value < least)
@@ -73,7 +58,7 @@ std::uint64_t number(const po::variables_map& given, const char* option, long le
   return static_cast<std::uint64_t>(value);
 }
 
-SequenceBagConfig configOf(const po::variables_map& given)
+SequenceBagConfig configOf(const Given& given)
 {
   SequenceBagConfig config;
   config.dataset = required(given, "dataset");
@@ -81,7 +66,7 @@ SequenceBagConfig configOf(const po::variables_map& given)
   config.sequence = given["sequence"].as<std::string>();
   config.semantics = given["semantics"].as<std::string>();
   config.first = number(given, "first", 0);
-  if (given.count("count") != 0) config.count = number(given, "count", 1);
+  if (isGiven(given, "count")) config.count = number(given, "count", 1);
   config.compression = given["compression"].as<std::string>();
   config.start_s = given["start"].as<double>();
   config.frame_id = given["frame-id"].as<std::string>();
@@ -90,7 +75,7 @@ SequenceBagConfig configOf(const po::variables_map& given)
   return config;
 }
 
-void run(const po::variables_map& given)
+int run(const Given& given)
 {
   const SequenceBagConfig config = configOf(given);
   noteInterrupts();
@@ -109,32 +94,11 @@ void run(const po::variables_map& given)
               static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(summary.points),
               static_cast<double>(summary.bytes) / 1e6, summary.labelled ? "yes" : "no",
               summary.ground_truth ? "yes" : "no", summary.poses ? "yes" : "no");
+  return EXIT_SUCCESS;
 }
 }  // namespace
 
 int main(int argc, char** argv)
 {
-  try
-  {
-    const auto options = describeOptions();
-    po::variables_map given;
-    // no abbreviations: a later option must not change what a script means
-    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv)
-                  .options(options)
-                  .positional(po::positional_options_description())
-                  .style(style)
-                  .run(),
-              given);
-    if (given.count("help") != 0)
-      std::cout << options;
-    else
-      run(given);
-    return EXIT_SUCCESS;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "semantickitti_to_bag: " << error.what() << "\n";
-    return interrupted() != 0 ? 128 + interrupted() : EXIT_FAILURE;
-  }
+  return runProgram("semantickitti_to_bag", argc, argv, describeOptions(), run);
 }

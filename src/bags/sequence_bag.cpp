@@ -1,7 +1,7 @@
 #include "bags/sequence_bag.h"
 
 #include "bags/point_message.h"
-#include "bags/pose_message.h"
+#include "ros/pose_message.h"
 
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"

@@ -1,6 +1,6 @@
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
 
-#include "lidar_panoptic_clustering/core/instance_colors.h"
+#include "lidar_panoptic_clustering/core/color_series.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
 namespace lidar_panoptic_clustering

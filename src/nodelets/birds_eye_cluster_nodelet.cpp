@@ -1,4 +1,4 @@
-#include "nodelets/cluster_nodelet.h"
+#include "ros/cluster_nodelet.h"
 
 #include <lidar_panoptic_clustering/BirdsEyeClusterConfig.h>
 #include <pluginlib/class_list_macros.hpp>

@@ -1,9 +1,9 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/evaluation/object_errors.h"
 #include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
-#include "nodelets/cloud_subscription.h"
-#include "nodelets/parameter_server.h"
-#include "nodelets/stamp_matcher.h"
+#include "ros/cloud_subscription.h"
+#include "ros/parameter_server.h"
+#include "ros/stamp_matcher.h"
 
 #include <diagnostic_updater/diagnostic_updater.h>
 #include <nodelet/nodelet.h>

@@ -1,11 +1,11 @@
-#include "lidar_panoptic_clustering/clusterers/factory.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/drawing/scan_figure.h"
-#include "nodelets/cloud_subscription.h"
-#include "nodelets/frame_report.h"
-#include "nodelets/parameter_server.h"
-#include "nodelets/report_output.h"
-#include "nodelets/stage_message.h"
+#include "lidar_panoptic_clustering/pipeline/factory.h"
+#include "reporting/frame_report.h"
+#include "reporting/report_output.h"
+#include "reporting/stage_message.h"
+#include "ros/cloud_subscription.h"
+#include "ros/parameter_server.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nodelet/nodelet.h>

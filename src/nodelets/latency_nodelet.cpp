@@ -1,10 +1,10 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
-#include "nodelets/cloud_subscription.h"
-#include "nodelets/latency_report.h"
-#include "nodelets/parameter_server.h"
-#include "nodelets/report_output.h"
-#include "nodelets/stage_message.h"
+#include "reporting/latency_report.h"
+#include "reporting/report_output.h"
+#include "reporting/stage_message.h"
+#include "ros/cloud_subscription.h"
+#include "ros/parameter_server.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
 #include <nodelet/nodelet.h>

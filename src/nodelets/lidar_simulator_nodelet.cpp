@@ -1,6 +1,6 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
-#include "nodelets/parameter_server.h"
+#include "ros/parameter_server.h"
 
 #include <geometry_msgs/TransformStamped.h>
 #include <nodelet/nodelet.h>

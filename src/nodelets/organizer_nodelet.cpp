@@ -2,12 +2,12 @@
 #include "lidar_panoptic_clustering/projection/organizer.h"
 #include "lidar_panoptic_clustering/projection/original_cloud.h"
 #include "lidar_panoptic_clustering/projection/original_labeller.h"
-#include "nodelets/cloud_subscription.h"
-#include "nodelets/frame_history.h"
-#include "nodelets/label_matcher.h"
-#include "nodelets/parameter_server.h"
-#include "nodelets/scan_labeller.h"
-#include "nodelets/stream_diagnostics.h"
+#include "lidar_panoptic_clustering/scan_to_objects/scan_labeller.h"
+#include "ros/cloud_subscription.h"
+#include "ros/frame_history.h"
+#include "ros/label_matcher.h"
+#include "ros/parameter_server.h"
+#include "ros/stream_diagnostics.h"
 
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>

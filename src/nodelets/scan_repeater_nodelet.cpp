@@ -1,7 +1,7 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
-#include "nodelets/cloud_subscription.h"
-#include "nodelets/parameter_server.h"
+#include "ros/cloud_subscription.h"
+#include "ros/parameter_server.h"
 
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>

@@ -1,8 +1,8 @@
-#include "bags/pose_message.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
-#include "nodelets/parameter_server.h"
+#include "ros/parameter_server.h"
+#include "ros/pose_message.h"
 
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>

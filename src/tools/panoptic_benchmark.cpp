@@ -1,15 +1,11 @@
 #include "tools/support/aside_file.h"
 #include "tools/support/benchmark_charts.h"
 #include "tools/support/benchmark_figure.h"
+#include "tools/support/program.h"
 #include "tools/support/run_benchmark.h"
 
 #include <sys/ioctl.h>
-#include <boost/program_options.hpp>
 
-#include <cstdlib>
-#include <iostream>
-
-namespace po = boost::program_options;
 namespace fs = std::filesystem;
 using namespace lidar_panoptic_clustering;
 
@@ -32,62 +28,40 @@ Examples:
 
 Options)";
 
-po::options_description describeOptions()
+Options describeOptions()
 {
-  po::options_description options(kUsage, 110, 60);
-  const auto text = [](const char* name) { return po::value<std::string>()->value_name(name); };
-  const auto list = [](const char* name) { return po::value<std::vector<std::string>>()->value_name(name); };
-  const auto number = [](int value) { return po::value<int>()->value_name("N")->default_value(value); };
-  options.add_options()("help,h", "this text");
-  options.add_options()("dataset", text("DIR"), "folder that holds sequences/SS/{velodyne,labels}");
-  options.add_options()("sequences", text("00,05"), "sequences to run on; otherwise all of the data set with labels");
-  options.add_options()("split", text("NAME"), "train, valid (sequence 08) or test instead of --sequences");
+  Options options = describeProgram(kUsage);
+  options.add_options()("dataset", textValue("DIR"), "folder that holds sequences/SS/{velodyne,labels}");
+  options.add_options()("sequences", textValue("00,05"),
+                        "sequences to run on; otherwise all of the data set with labels");
+  options.add_options()("split", textValue("NAME"), "train, valid (sequence 08) or test instead of --sequences");
   options.add_options()(
-      "semantics", text("DIR"),
+      "semantics", textValue("DIR"),
       "folder that holds sequences/SS/predictions, a network's classes; otherwise the ground truth's");
-  options.add_options()("algorithms", text("A,B"),
+  options.add_options()("algorithms", textValue("A,B"),
                         "algorithms to run; otherwise all (supervoxel twice, without and with normals)");
   options.add_options()("survey", "the settings of Zhao et al. 2021: no class sizes, no refinement");
-  options.add_options()("set", list("A.P=V,V ..")->multitoken()->composing(),
+  options.add_options()("set", textValues("A.P=V,V ..")->composing(),
                         "sets parameter P of algorithm A; several values, or several parameters, give a row each");
   options.add_options()("switches",
                         "also each row with no step of the refinement, with each alone, and with all but each");
-  options.add_options()("jobs", number(1),
+  options.add_options()("jobs", numberValue(1),
                         "threads, each on scans of its own; the quality does not depend on it, but times are best "
                         "taken with one");
-  options.add_options()("shard", text("I/N")->default_value("1/1"), "every N-th scan, beginning with the I-th");
-  options.add_options()("limit", number(0), "the first N scans of each sequence; 0: all");
-  options.add_options()("output", text("DIR"),
+  options.add_options()("shard", textValue("I/N")->default_value("1/1"), "every N-th scan, beginning with the I-th");
+  options.add_options()("limit", numberValue(0), "the first N scans of each sequence; 0: all");
+  options.add_options()("output", textValue("DIR"),
                         "write ROW/sequences/SS/predictions/NNNNNN.label; a later run goes on where this one stops");
-  options.add_options()("report", text("FILE.json"), "write all figures and what is needed to merge them");
-  options.add_options()("plot", text("DIR"), "write charts, and a figure of each sequence's worst scan");
-  options.add_options()("class-table", text("FILE"),
+  options.add_options()("report", textValue("FILE.json"), "write all figures and what is needed to merge them");
+  options.add_options()("plot", textValue("DIR"), "write charts, and a figure of each sequence's worst scan");
+  options.add_options()("class-table", textValue("FILE"),
                         "YAML file, or the name of a table that ships with the package (default: semantic_kitti)");
-  options.add_options()("columns", number(2048), "of the range image");
+  options.add_options()("columns", numberValue(2048), "of the range image");
   options.add_options()("keep-going", "skip scans that cannot be used and count them in the report");
-  options.add_options()("merge", list("FILE.json ..")->multitoken(), "add up the reports of shards");
-  options.add_options()("compare", list("FILE.json ..")->multitoken(),
+  options.add_options()("merge", textValues("FILE.json .."), "add up the reports of shards");
+  options.add_options()("compare", textValues("FILE.json .."),
                         "print PQ of things of reports of the same rows side by side");
   return options;
-}
-
-std::string textOf(const po::variables_map& given, const char* option)
-{
-  return given.count(option) == 0 ? "" : given[option].as<std::string>();
-}
-
-std::vector<std::string> listOf(const po::variables_map& given, const char* option)
-{
-  return given.count(option) == 0 ? std::vector<std::string>{} : given[option].as<std::vector<std::string>>();
-}
-
-int numberOf(const po::variables_map& given, const char* option, int min, int max)
-{
-  const int value = given[option].as<int>();
-  if (value < min || value > max)
-    throw std::invalid_argument("--" + std::string(option) + " is " + std::to_string(value) + ", expected " +
-                                std::to_string(min) + " to " + std::to_string(max));
-  return value;
 }
 
 void readShard(const std::string& text, BenchmarkSettings& settings)
@@ -98,28 +72,28 @@ void readShard(const std::string& text, BenchmarkSettings& settings)
     throw std::invalid_argument("--shard is '" + text + "', expected I/N with I from 1 to N");
 }
 
-BenchmarkSettings readSettings(const po::variables_map& given)
+BenchmarkSettings readSettings(const Given& given)
 {
   BenchmarkSettings settings;
   settings.dataset = textOf(given, "dataset");
   if (settings.dataset.empty()) throw std::invalid_argument("--dataset is missing; see --help");
-  if (given.count("sequences") != 0 && given.count("split") != 0)
+  if (isGiven(given, "sequences") && isGiven(given, "split"))
     throw std::invalid_argument("--sequences and --split exclude each other");
-  if (given.count("sequences") != 0) settings.sequences = splitAtCommas(textOf(given, "sequences"), "--sequences");
-  if (given.count("split") != 0) settings.sequences = semanticKittiSplit(textOf(given, "split"));
+  if (isGiven(given, "sequences")) settings.sequences = splitAtCommas(textOf(given, "sequences"), "--sequences");
+  if (isGiven(given, "split")) settings.sequences = semanticKittiSplit(textOf(given, "split"));
   settings.semantics = fs::path(textOf(given, "semantics")).lexically_normal().string();
-  if (given.count("class-table") != 0) settings.class_table = textOf(given, "class-table");
+  if (isGiven(given, "class-table")) settings.class_table = textOf(given, "class-table");
   std::vector<std::string> algorithms;
-  if (given.count("algorithms") != 0) algorithms = splitAtCommas(textOf(given, "algorithms"), "--algorithms");
-  if (given.count("switches") != 0 && given.count("survey") != 0)
+  if (isGiven(given, "algorithms")) algorithms = splitAtCommas(textOf(given, "algorithms"), "--algorithms");
+  if (isGiven(given, "switches") && isGiven(given, "survey"))
     throw std::invalid_argument("--switches and --survey exclude each other: the survey has no refinement");
-  settings.rows = makeRows(algorithms, listOf(given, "set"), given.count("survey") != 0, given.count("switches") != 0);
+  settings.rows = makeRows(algorithms, listOf(given, "set"), isGiven(given, "survey"), isGiven(given, "switches"));
   settings.output = textOf(given, "output");
   settings.jobs = numberOf(given, "jobs", 1, 1024);
   readShard(textOf(given, "shard"), settings);
   settings.limit = numberOf(given, "limit", 0, 1 << 30);
   settings.columns = numberOf(given, "columns", 16, 16384);
-  settings.keep_going = given.count("keep-going") != 0;
+  settings.keep_going = isGiven(given, "keep-going");
   return settings;
 }
 
@@ -133,28 +107,20 @@ std::size_t terminalWidth()
 /// The table goes first, so that a full disk cannot take the figures along.
 void publish(const BenchmarkReport& report, std::optional<AsideFile>& file, const std::string& plot)
 {
-  std::cout << formatBenchmark(report, terminalWidth()) << std::flush;
-  if (!std::cout) throw std::runtime_error("cannot write the table to standard output");
+  printResult(formatBenchmark(report, terminalWidth()));
   if (file) file->save(report.toJsonText());
   if (!plot.empty()) drawBenchmarkCharts(report, plot);
 }
 
-std::string readText(const std::string& path)
+std::vector<BenchmarkReport> loadReports(const Given& given, const char* option)
 {
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot read report " + path + ": " + std::strerror(errno));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
-
-std::vector<BenchmarkReport> loadReports(const po::variables_map& given, const char* option)
-{
-  if (given.count("dataset") != 0)
+  if (isGiven(given, "dataset"))
     throw std::invalid_argument("--" + std::string(option) + " takes reports, not --dataset");
   std::vector<BenchmarkReport> reports;
   for (const std::string& path : listOf(given, option))
   {
-    const std::string text = readText(path);
-    const bool table_given = given.count("class-table") != 0;
+    const std::string text = readTextFile(path);
+    const bool table_given = isGiven(given, "class-table");
     const std::string name = table_given ? textOf(given, "class-table") : BenchmarkReport::classTableOf(text, path);
     const auto table = std::make_shared<const ClassTable>(ClassTable::load(name));
     reports.push_back(BenchmarkReport::fromJsonText(text, path, table));
@@ -162,19 +128,18 @@ std::vector<BenchmarkReport> loadReports(const po::variables_map& given, const c
   return reports;
 }
 
-BenchmarkReport merge(const po::variables_map& given)
+BenchmarkReport merge(const Given& given)
 {
   std::vector<BenchmarkReport> reports = loadReports(given, "merge");
   for (std::size_t i = 1; i < reports.size(); ++i) reports[0] += reports[i];
   return std::move(reports[0]);
 }
 
-void compare(const po::variables_map& given)
+void compare(const Given& given)
 {
   std::vector<std::string> headings;
   for (const std::string& path : listOf(given, "compare")) headings.push_back(fs::path(path).stem().string());
-  std::cout << formatComparison(loadReports(given, "compare"), headings) << std::flush;
-  if (!std::cout) throw std::runtime_error("cannot write the table to standard output");
+  printResult(formatComparison(loadReports(given, "compare"), headings));
 }
 
 void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
@@ -186,18 +151,18 @@ void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
 }
 
 /// Exit status.
-int run(const po::variables_map& given)
+int run(const Given& given)
 {
-  if (given.count("compare") != 0)
+  if (isGiven(given, "compare"))
   {
     compare(given);
     return EXIT_SUCCESS;
   }
   const std::string plot = textOf(given, "plot");
-  const bool merging = given.count("merge") != 0;
+  const bool merging = isGiven(given, "merge");
   const BenchmarkSettings settings = merging ? BenchmarkSettings{} : readSettings(given);
   std::optional<AsideFile> file;
-  if (given.count("report") != 0) file.emplace(textOf(given, "report"));
+  if (isGiven(given, "report")) file.emplace(textOf(given, "report"));
   if (!plot.empty()) fs::create_directories(plot);
   if (merging)
   {
@@ -221,25 +186,5 @@ int run(const po::variables_map& given)
 
 int main(int argc, char** argv)
 {
-  try
-  {
-    const auto options = describeOptions();
-    po::variables_map given;
-    // no abbreviations: a later option must not change what a script means
-    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-    po::store(po::command_line_parser(argc, argv)
-                  .options(options)
-                  .positional(po::positional_options_description())
-                  .style(style)
-                  .run(),
-              given);
-    if (given.count("help") == 0) return run(given);
-    std::cout << options;
-    return EXIT_SUCCESS;
-  }
-  catch (const std::exception& error)
-  {
-    std::cerr << "panoptic_benchmark: " << error.what() << "\n";
-    return EXIT_FAILURE;
-  }
+  return runProgram("panoptic_benchmark", argc, argv, describeOptions(), run);
 }

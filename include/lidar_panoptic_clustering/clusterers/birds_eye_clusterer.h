@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/clusterer.h"
-#include "lidar_panoptic_clustering/core/planar_cells.h"
+#include "lidar_panoptic_clustering/geometry/planar_cells.h"
 
 namespace lidar_panoptic_clustering
 {

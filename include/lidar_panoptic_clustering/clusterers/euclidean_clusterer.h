@@ -2,7 +2,7 @@
 
 #include "lidar_panoptic_clustering/clusterers/link_groups.h"
 #include "lidar_panoptic_clustering/core/clusterer.h"
-#include "lidar_panoptic_clustering/core/voxel_index.h"
+#include "lidar_panoptic_clustering/geometry/voxel_index.h"
 
 #include <pcl/point_types.h>
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/clusterer.h"
-#include "lidar_panoptic_clustering/core/disjoint_sets.h"
+#include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
 
 namespace lidar_panoptic_clustering
 {

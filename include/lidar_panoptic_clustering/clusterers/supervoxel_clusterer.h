@@ -2,8 +2,8 @@
 
 #include "lidar_panoptic_clustering/clusterers/link_groups.h"
 #include "lidar_panoptic_clustering/core/clusterer.h"
-#include "lidar_panoptic_clustering/core/disjoint_sets.h"
-#include "lidar_panoptic_clustering/core/voxel_index.h"
+#include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
+#include "lidar_panoptic_clustering/geometry/voxel_index.h"
 
 namespace lidar_panoptic_clustering
 {

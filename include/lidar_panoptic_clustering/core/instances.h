@@ -1,12 +1,9 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/core/box_splitting.h"
-#include "lidar_panoptic_clustering/core/class_bridging.h"
-#include "lidar_panoptic_clustering/core/part_merging.h"
-#include "lidar_panoptic_clustering/core/thing_scan.h"
+#include "lidar_panoptic_clustering/core/class_table.h"
 
+#include <cstddef>
 #include <cstdint>
-#include <memory>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -25,72 +22,5 @@ struct Instances
   std::vector<Object> objects;    ///< objects[i] is instance i + 1
 
   std::size_t count() const { return objects.size(); }
-};
-
-struct RefinementConfig
-{
-  double bridge_distance_m = 0.3;  ///< objects of one group of classes that are closer are one; 0: never
-  bool split = true;               ///< objects too big for their class are cut where they hang together least
-  double size_margin = 1.3;        ///< factor on the class's usual size above which an object is too big
-  bool merge = true;               ///< parts that together still fit one object of their class are joined
-  bool vote = true;                ///< all points of an instance get the class of most of them
-  int min_points = 1;              ///< smaller instances get id 0; 1 keeps all
-
-  template <class Self, class Visitor>
-  static void visit(Self& self, Visitor&& visitor)
-  {
-    visitor("bridge_distance_m", self.bridge_distance_m, 0.0, 10.0);
-    visitor("split", self.split);
-    visitor("size_margin", self.size_margin, 1.0, 10.0);
-    visitor("merge", self.merge);
-    visitor("vote", self.vote);
-    visitor("min_points", self.min_points, 1, 10000);
-  }
-};
-
-/// From a clusterer's components to numbered instances, in small steps; buffers are kept between scans.
-class Refinement
-{
-public:
-  /// Throws std::invalid_argument on a value outside its range.
-  Refinement(std::shared_ptr<const ClassTable> table, const RefinementConfig& config);
-
-  /// Bridge, split what is too big, merge parts, number. Ids are 1..n by the first pixel in row-major order.
-  /// Linear in the thing points, but for what splitting and merging take.
-  void refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances);
-
-private:
-  /// An object to be split.
-  struct Range
-  {
-    std::uint32_t begin, end;             ///< of things_
-    int tenths = BoxSplitter::kCoarsest;  ///< the distance to begin with
-  };
-
-  void gather(const ThingScan& scan, const std::vector<std::uint32_t>& component);
-  static void addRun(const ThingScan& scan, std::uint32_t begin, std::uint32_t end, RefinedObject& object,
-                     std::uint32_t* votes);
-  void elect(std::uint32_t object, std::uint32_t class_count);
-  void bridge(const ThingScan& scan);
-  void moveInto(std::uint32_t from, std::uint32_t to, bool is_first, std::uint32_t class_count);
-  bool isTooBig(const RefinedObject& object) const;
-  void splitTooBig(const ThingScan& scan);
-  void split(const ThingScan& scan, Range range);
-  void number(const ThingScan& scan, Instances& instances);
-  std::uint32_t numbered(const RefinedObject& object, Instances& instances) const;
-
-  std::shared_ptr<const ClassTable> table_;
-  RefinementConfig config_;
-  std::vector<RefinedObject> objects_;
-  std::vector<std::uint32_t> votes_;  ///< object x class
-  std::vector<std::uint32_t> object_of_thing_, object_of_component_;
-  ClassBridging bridging_;
-  BoxSplitter splitter_;
-  PartMerger merger_;
-  std::vector<std::uint32_t> whole_of_, id_of_;  ///< by object
-
-  std::vector<std::uint32_t> things_;  ///< of the objects too big for their class, object by object
-  std::vector<Range> open_;            ///< what is still to be split
-  std::vector<std::uint32_t> slot_of_, part_of_, sorted_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -1,8 +1,8 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/core/disjoint_sets.h"
-#include "lidar_panoptic_clustering/core/footprint.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
+#include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
+#include "lidar_panoptic_clustering/geometry/footprint.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 
 #include <cstdint>

@@ -1,8 +1,9 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/class_table.h"
-#include "lidar_panoptic_clustering/core/disjoint_sets.h"
 #include "lidar_panoptic_clustering/core/instances.h"
+#include "lidar_panoptic_clustering/core/thing_scan.h"
+#include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
 #include "lidar_panoptic_clustering/projection/point_projection.h"
 
 #include <memory>

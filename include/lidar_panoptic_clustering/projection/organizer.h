@@ -1,10 +1,10 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/core/sensor_model.h"
 #include "lidar_panoptic_clustering/projection/layout_probe.h"
 #include "lidar_panoptic_clustering/projection/organized_scan.h"
 #include "lidar_panoptic_clustering/projection/raw_cloud.h"
 #include "lidar_panoptic_clustering/projection/row_finder.h"
+#include "lidar_panoptic_clustering/projection/sensor_model.h"
 
 #include <optional>
 #include <string>

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/point_types.h"
-#include "lidar_panoptic_clustering/core/sensor_model.h"
+#include "lidar_panoptic_clustering/projection/sensor_model.h"
 #include "lidar_panoptic_clustering/simulation/ground.h"
 #include "lidar_panoptic_clustering/simulation/pose.h"
 #include "lidar_panoptic_clustering/simulation/ray_caster.h"

@@ -1,6 +1,6 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/core/sensor_model.h"
+#include "lidar_panoptic_clustering/projection/sensor_model.h"
 #include "lidar_panoptic_clustering/simulation/pose.h"
 #include "lidar_panoptic_clustering/simulation/random.h"
 #include "lidar_panoptic_clustering/simulation/solid.h"

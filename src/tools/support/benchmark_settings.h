@@ -1,12 +1,12 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/clusterers/factory.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
+#include "lidar_panoptic_clustering/pipeline/factory.h"
+#include "tools/support/program.h"
 
 #include <algorithm>
 #include <cstddef>
 #include <map>
-#include <sstream>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -45,17 +45,6 @@ struct BenchmarkSettings
   int columns = 2048;         ///< of the range image
   bool keep_going = false;    ///< skip and count scans that cannot be used
 };
-
-/// The non-empty parts of a list; throws std::invalid_argument naming `option` when there is none.
-inline std::vector<std::string> splitAtCommas(const std::string& list, const std::string& option)
-{
-  std::vector<std::string> names;
-  std::istringstream in(list);
-  for (std::string name; std::getline(in, name, ',');)
-    if (!name.empty()) names.push_back(name);
-  if (names.empty()) throw std::invalid_argument(option + " is given an empty list");
-  return names;
-}
 
 /// `--set algorithm.parameter=value,value`
 struct Sweep

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/core/frame_pipeline.h"
 #include "lidar_panoptic_clustering/evaluation/frame_times.h"
+#include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/projection/hidden_points.h"
 #include "tools/support/benchmark_scans.h"
 #include "tools/support/benchmark_settings.h"

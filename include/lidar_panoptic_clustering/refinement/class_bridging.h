@@ -1,0 +1,47 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/core/thing_scan.h"
+#include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
+#include "lidar_panoptic_clustering/geometry/planar_cells.h"
+#include "lidar_panoptic_clustering/refinement/part_merging.h"
+
+#include <cstdint>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// Joins objects of one group of classes that touch: a network that paints half a car as a truck makes two objects of
+/// it, and so do rules that look along scan lines and columns only.
+///
+/// Two objects are one when two points of theirs are closer than `distance` in bird's-eye view. Outlines tell which
+/// objects can be that close, and only their points where the other's outline is near are compared: n log n in the
+/// objects and in the cells of those points. Keeps its memory.
+class ClassBridging
+{
+public:
+  /// Writes for each object which one it belongs to, the first in order for each whole. `object_of_thing` runs parallel
+  /// to the scan's points. A `distance` of 0 joins nothing.
+  void join(const ThingScan& scan, const ClassTable& table, float distance, const std::vector<RefinedObject>& objects,
+            const std::vector<std::uint32_t>& object_of_thing, std::vector<std::uint32_t>& whole_of);
+
+private:
+  /// Where an object's points can be near another one's: an upright rectangle, empty where there is none.
+  struct Reach
+  {
+    float min_x, max_x, min_y, max_y;
+    void add(const Footprint& other, float distance);
+    bool contains(float x, float y) const { return x >= min_x && x <= max_x && y >= min_y && y <= max_y; }
+  };
+
+  bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
+  void uniteComponents(const std::vector<std::uint32_t>& object_of_thing);
+
+  std::vector<std::uint32_t> order_;  ///< objects by least x
+  std::vector<Reach> reach_;          ///< by object
+  PlanarCells cells_;                 ///< of all objects, a layer a group
+  std::vector<float> distance_of_group_;
+  std::vector<std::uint32_t> component_of_cell_;
+  DisjointSets sets_;
+};
+}  // namespace lidar_panoptic_clustering

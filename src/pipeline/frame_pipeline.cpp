@@ -1,0 +1,107 @@
+#include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
+
+#include "lidar_panoptic_clustering/core/one_sweep.h"
+
+#include <chrono>
+#include <stdexcept>
+#include <string>
+#include <utility>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+class Stopwatch
+{
+public:
+  /// Milliseconds since the last call or the construction.
+  double lap()
+  {
+    const auto now = Clock::now();
+    return std::chrono::duration<double, std::milli>(now - std::exchange(start_, now)).count();
+  }
+
+private:
+  using Clock = std::chrono::steady_clock;
+  Clock::time_point start_ = Clock::now();
+};
+
+[[noreturn]] void throwNoScanLines(std::size_t points)
+{
+  throw std::invalid_argument("expected scan lines (rows of an organised cloud), found one row of " +
+                              std::to_string(points) +
+                              " points that do not come in one sweep, as of several lidars merged: use an algorithm "
+                              "that works on points alone (birds_eye, euclidean, supervoxel)");
+}
+}  // namespace
+
+FramePipeline::FramePipeline(std::shared_ptr<const ClassTable> table, const PipelineConfig& config,
+                             std::unique_ptr<Clusterer> clusterer)
+    : table_(std::move(table)),
+      selection_(config.selection),
+      refinement_(table_, config.refinement),
+      vote_(config.refinement.vote),
+      clusterer_(std::move(clusterer))
+{
+}
+
+void FramePipeline::reconfigure(const PipelineConfig& config, std::unique_ptr<Clusterer> clusterer)
+{
+  selection_ = config.selection;
+  refinement_ = Refinement(table_, config.refinement);
+  vote_ = config.refinement.vote;
+  clusterer_ = std::move(clusterer);
+}
+
+void FramePipeline::segment(const LabelledCloud& in)
+{
+  Stopwatch stopwatch;
+  if (in.height == 1 && clusterer_->needsScanLines() && !comesInOneSweep(in)) throwNoScanLines(in.size());
+  selectThings(in, *table_, selection_, things_);
+  times_.select_ms = stopwatch.lap();
+
+  clusterer_->cluster(things_, component_);
+  times_.cluster_ms = stopwatch.lap();
+
+  refinement_.refine(things_, component_, instances_);
+  times_.refine_ms = stopwatch.lap();
+  times_.paint_ms = 0.0;
+}
+
+void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
+{
+  Stopwatch stopwatch;
+  out.header = in.header;
+  out.width = in.width, out.height = in.height;
+  out.is_dense = in.is_dense;
+  out.sensor_origin_ = in.sensor_origin_, out.sensor_orientation_ = in.sensor_orientation_;
+  out.points.resize(in.points.size());
+  const LabelledPoint* from = in.points.data();
+  for (auto& to : out.points)
+  {
+    to.getVector4fMap() = from->getVector4fMap();
+    to.intensity = from->intensity;
+    to.label = from->label;
+    to.instance = 0;
+    to.rgb = table_->rgbOf(from->label);
+    ++from;
+  }
+
+  const auto& colors = colors_.follow(instances_);
+  for (std::uint32_t row = 0; row < things_.rows; ++row)
+  {
+    PanopticPoint* line = out.points.data() + static_cast<std::size_t>(row) * things_.columns;
+    for (std::uint32_t i = things_.line_begin[row]; i < things_.line_begin[row + 1]; ++i)
+    {
+      const std::uint32_t id = instances_.id[i];
+      if (id == 0) continue;
+      PanopticPoint& to = line[things_.points[i].column];
+      to.instance = id;
+      to.rgb = colors[id - 1];
+      const ClassIndex voted = votedClass(id, things_.class_index[i]);
+      if (voted != things_.class_index[i]) to.label = (*table_)[voted].ids[0];
+    }
+  }
+  times_.paint_ms = stopwatch.lap();
+}
+}  // namespace lidar_panoptic_clustering

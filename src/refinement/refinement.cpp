@@ -1,0 +1,213 @@
+#include "lidar_panoptic_clustering/refinement/refinement.h"
+
+#include "lidar_panoptic_clustering/core/parameters.h"
+
+#include <algorithm>
+#include <numeric>
+#include <utility>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr std::uint32_t kNone = 0xFFFFFFFF;
+}  // namespace
+
+Refinement::Refinement(std::shared_ptr<const ClassTable> table, const RefinementConfig& config)
+    : table_(std::move(table)), config_(config)
+{
+  validateParameters(config_);
+}
+
+void Refinement::refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances)
+{
+  gather(scan, component);
+  if (config_.bridge_distance_m > 0.0) bridge(scan);
+  if (config_.split) splitTooBig(scan);
+  if (config_.merge)
+  {
+    merger_.merge(objects_, *table_, whole_of_);
+  }
+  else
+  {
+    whole_of_.resize(objects_.size());
+    std::iota(whole_of_.begin(), whole_of_.end(), 0U);
+  }
+  number(scan, instances);
+}
+
+/// Makes an object of each component, numbered by first point. Neighbours on a scan line mostly share theirs, so the
+/// points are taken run by run.
+void Refinement::gather(const ThingScan& scan, const std::vector<std::uint32_t>& component)
+{
+  const auto count = static_cast<std::uint32_t>(scan.size());
+  object_of_component_.assign(count, kNone);
+  object_of_thing_.resize(count);
+  objects_.clear();
+  votes_.clear();
+  for (std::uint32_t begin = 0, end = 0; begin < count; begin = end)
+  {
+    while (end < count && component[end] == component[begin]) ++end;
+    std::uint32_t& object = object_of_component_[component[begin]];
+    if (object == kNone)
+    {
+      object = static_cast<std::uint32_t>(objects_.size());
+      objects_.emplace_back();
+      votes_.resize(votes_.size() + scan.class_count, 0);
+    }
+    std::fill(object_of_thing_.begin() + begin, object_of_thing_.begin() + end, object);
+    addRun(scan, begin, end, objects_[object], &votes_[std::size_t{object} * scan.class_count]);
+  }
+  for (std::uint32_t k = 0; k < objects_.size(); ++k) elect(k, scan.class_count);
+}
+
+void Refinement::addRun(const ThingScan& scan, std::uint32_t begin, std::uint32_t end, RefinedObject& object,
+                        std::uint32_t* votes)
+{
+  object.point_count += end - begin;
+  float x = 0.0F, y = 0.0F, z = 0.0F;
+  for (std::uint32_t i = begin; i < end; ++i)
+  {
+    const ThingPoint& p = scan.points[i];
+    object.footprint.add(p.x, p.y);
+    x += p.x, y += p.y, z += p.z;
+    ++votes[scan.class_index[i]];
+  }
+  object.sum_x += x, object.sum_y += y, object.sum_z += z;
+}
+
+/// The object's class by its row of votes_; the lower index wins a tie.
+void Refinement::elect(std::uint32_t object, std::uint32_t class_count)
+{
+  const auto begin = votes_.begin() + static_cast<std::ptrdiff_t>(std::size_t{object} * class_count);
+  objects_[object].class_index = static_cast<ClassIndex>(std::max_element(begin, begin + class_count) - begin);
+}
+
+void Refinement::bridge(const ThingScan& scan)
+{
+  bridging_.join(scan, *table_, static_cast<float>(config_.bridge_distance_m), objects_, object_of_thing_, whole_of_);
+  std::uint32_t wholes = 0;
+  for (std::uint32_t k = 0; k < whole_of_.size(); ++k)
+  {
+    const std::uint32_t whole = whole_of_[k];  // the first of its objects: never above k, and renumbered before
+    whole_of_[k] = whole == k ? wholes++ : whole_of_[whole];
+    moveInto(k, whole_of_[k], whole == k, scan.class_count);
+  }
+  if (wholes == objects_.size()) return;
+  objects_.resize(wholes);
+  for (std::uint32_t k = 0; k < wholes; ++k) elect(k, scan.class_count);
+  for (std::uint32_t& object : object_of_thing_) object = whole_of_[object];
+}
+
+/// Adds object `from` to object `to` <= `from`, or puts it in its place where it is the first there.
+void Refinement::moveInto(std::uint32_t from, std::uint32_t to, bool is_first, std::uint32_t class_count)
+{
+  if (from == to) return;
+  const std::uint32_t* votes = &votes_[std::size_t{from} * class_count];
+  std::uint32_t* sum = &votes_[std::size_t{to} * class_count];
+  if (is_first)
+  {
+    objects_[to] = objects_[from];
+    std::copy(votes, votes + class_count, sum);
+    return;
+  }
+  objects_[to].add(objects_[from]);
+  for (std::uint32_t c = 0; c < class_count; ++c) sum[c] += votes[c];
+}
+
+bool Refinement::isTooBig(const RefinedObject& object) const
+{
+  const ClassInfo& info = (*table_)[object.class_index];
+  const auto margin = static_cast<float>(config_.size_margin);
+  return !object.footprint.fits(margin * info.length_m, margin * info.width_m);
+}
+
+void Refinement::splitTooBig(const ThingScan& scan)
+{
+  open_.clear();
+  slot_of_.assign(objects_.size(), kNone);
+  std::uint32_t count = 0;
+  for (std::uint32_t k = 0; k < objects_.size(); ++k)
+  {
+    if (!isTooBig(objects_[k])) continue;
+    slot_of_[k] = static_cast<std::uint32_t>(open_.size());
+    open_.push_back({count, count});
+    count += objects_[k].point_count;
+  }
+  if (open_.empty()) return;
+  things_.resize(count);
+  for (std::uint32_t i = 0; i < scan.size(); ++i)
+    if (const std::uint32_t slot = slot_of_[object_of_thing_[i]]; slot != kNone) things_[open_[slot].end++] = i;
+  while (!open_.empty())
+  {
+    const Range range = open_.back();
+    open_.pop_back();
+    split(scan, range);
+  }
+}
+
+/// Splits the object whose points are a range of things_; parts that are still too big are opened for the next turn.
+void Refinement::split(const ThingScan& scan, Range range)
+{
+  const std::uint32_t object = object_of_thing_[things_[range.begin]];
+  const float reach = scan.class_link_distance[objects_[object].class_index];
+  int tenths = range.tenths;
+  const std::uint32_t parts =
+      splitter_.split(scan, &things_[range.begin], range.end - range.begin, reach, tenths, part_of_);
+  if (parts < 2) return;
+
+  const auto first_fresh = static_cast<std::uint32_t>(objects_.size());
+  objects_.resize(objects_.size() + parts - 1);
+  votes_.resize(objects_.size() * scan.class_count);
+  const auto object_of_part = [&](std::uint32_t part) { return part == 0 ? object : first_fresh + part - 1; };
+  for (std::uint32_t part = 0; part < parts; ++part)
+  {
+    objects_[object_of_part(part)] = RefinedObject();
+    std::fill_n(&votes_[std::size_t{object_of_part(part)} * scan.class_count], scan.class_count, 0U);
+  }
+  sorted_.resize(range.end - range.begin);
+  for (std::uint32_t k = range.begin; k < range.end; ++k)
+  {
+    const std::uint32_t i = things_[k], mine = object_of_part(part_of_[k - range.begin]);
+    object_of_thing_[i] = mine;
+    addRun(scan, i, i + 1, objects_[mine], &votes_[std::size_t{mine} * scan.class_count]);
+  }
+  std::uint32_t begin = 0;
+  for (std::uint32_t part = 0; part < parts; ++part)
+  {
+    std::uint32_t end = begin;
+    for (std::uint32_t k = range.begin; k < range.end; ++k)
+      if (part_of_[k - range.begin] == part) sorted_[end++] = things_[k];
+    elect(object_of_part(part), scan.class_count);
+    if (isTooBig(objects_[object_of_part(part)])) open_.push_back({range.begin + begin, range.begin + end, tenths - 1});
+    begin = end;
+  }
+  std::copy(sorted_.begin(), sorted_.end(), things_.begin() + range.begin);
+}
+
+/// Ids by first pixel for the wholes that are large enough.
+void Refinement::number(const ThingScan& scan, Instances& instances)
+{
+  for (std::uint32_t k = 0; k < objects_.size(); ++k)
+    if (whole_of_[k] != k) objects_[whole_of_[k]].addPoints(objects_[k]);
+  id_of_.assign(objects_.size(), kNone);
+  instances.id.resize(scan.size());
+  instances.objects.clear();
+  for (std::size_t i = 0; i < scan.size(); ++i)
+  {
+    const std::uint32_t whole = whole_of_[object_of_thing_[i]];
+    if (id_of_[whole] == kNone) id_of_[whole] = numbered(objects_[whole], instances);
+    instances.id[i] = id_of_[whole];
+  }
+}
+
+/// The id of an object whose first pixel has come up.
+std::uint32_t Refinement::numbered(const RefinedObject& object, Instances& instances) const
+{
+  if (object.point_count < static_cast<std::uint32_t>(config_.min_points)) return 0;
+  const float scale = 1.0F / static_cast<float>(object.point_count);
+  instances.objects.push_back(
+      {object.point_count, object.class_index, scale * object.sum_x, scale * object.sum_y, scale * object.sum_z});
+  return static_cast<std::uint32_t>(instances.objects.size());
+}
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,102 @@
+#include "ros/stream_diagnostics.h"
+
+#include <algorithm>
+
+namespace lidar_panoptic_clustering
+{
+void StreamDiagnostics::start(ros::NodeHandle& nh, ros::NodeHandle& private_nh, const std::string& name)
+{
+  last_report_ = ros::WallTime::now();
+  updater_ = std::make_unique<diagnostic_updater::Updater>(nh, private_nh, name);
+  updater_->setHardwareID("none");
+  updater_->add("scans", this, &StreamDiagnostics::report);
+  // update() would skip every call that comes a moment early, and all of them in simulated time that does not run
+  timer_ = private_nh.createWallTimer(ros::WallDuration(1.0),
+                                      [this](const ros::WallTimerEvent&) { updater_->force_update(); });
+}
+
+void StreamDiagnostics::processed(const StageMilliseconds& stages)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.processed;
+  if (sums_.size() != stages.size()) sums_ = longest_ = StageMilliseconds(stages.size());
+  for (std::size_t i = 0; i < stages.size(); ++i)
+  {
+    sums_[i].first = longest_[i].first = stages[i].first;
+    sums_[i].second += stages[i].second;
+    longest_[i].second = std::max(longest_[i].second, stages[i].second);
+  }
+}
+
+void StreamDiagnostics::overwritten()
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.overwritten;
+}
+
+bool StreamDiagnostics::refused(const std::string& error)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  ++counts_.refused;
+  return noteError(error);
+}
+
+bool StreamDiagnostics::lacking(std::uint64_t count, const std::string& reason)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  counts_.lacking += count;
+  return noteError(reason);
+}
+
+void StreamDiagnostics::setFigure(const std::string& name, std::uint64_t value)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  figures_[name] = value;
+}
+
+bool StreamDiagnostics::noteError(const std::string& error)
+{
+  last_error_ = error;
+  const auto now = ros::WallTime::now();
+  if (now - last_logged_ < ros::WallDuration(5.0)) return false;
+  last_logged_ = now;
+  return true;
+}
+
+void StreamDiagnostics::summarize(diagnostic_updater::DiagnosticStatusWrapper& status) const
+{
+  using Level = diagnostic_msgs::DiagnosticStatus;
+  const std::uint64_t processed = counts_.processed - reported_.processed;
+  if (counts_.refused > reported_.refused)
+    status.summary(processed == 0 ? Level::ERROR : Level::WARN, "scans refused: " + last_error_);
+  else if (counts_.lacking > reported_.lacking)
+    status.summary(processed == 0 ? Level::ERROR : Level::WARN, "scans dropped: " + last_error_);
+  else if (counts_.overwritten - reported_.overwritten > processed)
+    status.summary(Level::WARN, "slower than the scans come: more than half of them dropped");
+  else
+    status.summary(Level::OK, processed > 0 ? "processing scans" : "no scans: no input, or nobody listens");
+}
+
+void StreamDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& status)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  const auto now = ros::WallTime::now();
+  const double seconds = (now - last_report_).toSec();
+  const std::uint64_t processed = counts_.processed - reported_.processed;
+  summarize(status);
+
+  status.addf("rate [Hz]", "%.2f", seconds > 0.0 ? static_cast<double>(processed) / seconds : 0.0);
+  for (std::size_t i = 0; i < sums_.size() && processed > 0; ++i)
+    status.addf(sums_[i].first + " [ms]", "mean %.3f, longest %.3f", sums_[i].second / static_cast<double>(processed),
+                longest_[i].second);
+  status.add("scans processed", counts_.processed);
+  status.add("scans dropped", counts_.overwritten + counts_.lacking);
+  status.add("scans refused", counts_.refused);
+  for (const auto& [name, value] : figures_) status.add(name, value);
+  status.add("last error", last_error_.empty() ? "none" : last_error_);
+
+  last_report_ = now;
+  reported_ = counts_;
+  sums_.clear(), longest_.clear();
+}
+}  // namespace lidar_panoptic_clustering
