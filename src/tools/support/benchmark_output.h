@@ -93,6 +93,7 @@ private:
     std::ostringstream text;
     text << "semantics: " << (settings.semantics.empty() ? "ground truth" : settings.semantics) << "\n"
          << "class table: " << settings.class_table << "\n"
+         << (settings.label_table.empty() ? "" : "label table: " + settings.label_table + "\n")
          << "columns: " << settings.columns << "\n"
          << "algorithm: " << row.algorithm << "\n";
     const ParameterMap parameters = row.allParameters();
