@@ -43,7 +43,7 @@ std::optional<std::uint32_t> expectedLabel(const OrganizedScan& scan, const Labe
   const auto width = static_cast<int>(scan.image.cloud.width);
   const ScanPoint& p = scan.points[i];
   const auto pixelOf = [&](std::uint32_t j) { return static_cast<int>(scan.image.pixel_of_point[j]); };
-  const double limit = std::max(0.1, 2.0 * std::hypot(p.x, p.y) * 2.0 * M_PI / width);
+  const double limit = std::min(0.2, std::max(0.1, 2.0 * std::hypot(p.x, p.y) * 2.0 * M_PI / width));
   double least = limit, second = limit;
   std::uint32_t label = kNoClass, second_label = kNoClass;
   for (std::uint32_t j = 0; j < scan.points.size(); ++j)

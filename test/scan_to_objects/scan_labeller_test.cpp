@@ -147,8 +147,15 @@ TEST(ScanLabeller, NoObjectGrowsByWhatItHides)
       const auto isShown = [&](std::uint32_t i)
       { return scanned.image.owner_of_pixel[scanned.image.pixel_of_point[i]] == i; };
       const auto& ids = chain.instanceIds();
+      // the object of an instance is that of its first point shown; its own hidden points may reach farther
+      const Order order = byFiring(returnsOf(scan), scan.width);
+      std::map<std::uint32_t, std::uint32_t> object_of;
+      for (std::uint32_t i = 0; i < ids.size(); ++i)
+        if (isShown(i)) object_of.emplace(ids[i], truth.points[order[i]].instance);
+      const auto isOwn = [&](std::uint32_t i)
+      { return object_of.count(ids[i]) > 0 && truth.points[order[i]].instance == object_of[ids[i]]; };
       const auto grown = extents(scanned.points, [&](std::uint32_t i) { return ids[i]; });
-      const auto shown = extents(scanned.points, [&](std::uint32_t i) { return isShown(i) ? ids[i] : 0U; });
+      const auto shown = extents(scanned.points, [&](std::uint32_t i) { return isShown(i) || isOwn(i) ? ids[i] : 0U; });
       std::size_t hidden = 0, with_class = 0;
       for (std::uint32_t i = 0; i < ids.size(); ++i)
         if (!isShown(i)) ++hidden, with_class += chain.labels()[i] != 0 ? 1 : 0;
