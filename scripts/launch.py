@@ -1,9 +1,9 @@
 """Becomes roslaunch, on the ROS master given or on one of its own.
 
-usage: launch_demo.py FD HOST MASTER ARGUMENT...
+usage: launch.py FD HOST MASTER ARGUMENT...
 
-Where MASTER is empty a port is taken for the demo's own master. It stays bound for as long as roslaunch runs, so that
-nobody else is given it, and it is not listened to, so that the master can: two demos started at once never meet.
+Where MASTER is empty a port is taken for a master of its own. It stays bound for as long as roslaunch runs, so that
+nobody else is given it, and it is not listened to, so that the master can: two started at once never meet.
 The master's address goes to the file descriptor FD.
 """
 import os
