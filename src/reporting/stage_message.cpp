@@ -1,9 +1,8 @@
 #include "reporting/stage_message.h"
 
 #include "core/plain_numbers.h"
-#include "core/printable.h"
 
-#include <stdexcept>
+#include <optional>
 
 namespace lidar_panoptic_clustering
 {
@@ -15,18 +14,13 @@ bool endsWithUnit(const std::string& key)
 {
   return key.size() > kUnit.size() && key.compare(key.size() - kUnit.size(), kUnit.size(), kUnit) == 0;
 }
-double numberIn(const diagnostic_msgs::KeyValue& pair)
+/// A value of 0 or more; nothing for text that is none: a message may come from anywhere, and an exception in its
+/// callback would end the whole manager.
+std::optional<double> numberIn(const diagnostic_msgs::KeyValue& pair)
 {
-  if (const auto number = parseNumber(pair.value)) return *number;
-  throw std::invalid_argument(printable("stages: '" + pair.key + "': expected a number, found '" + pair.value + "'"));
-}
-
-std::size_t countIn(const diagnostic_msgs::KeyValue& pair)
-{
-  constexpr double kMostPoints = 1e9;
-  const double number = numberIn(pair);
-  if (number >= 0.0 && number <= kMostPoints) return static_cast<std::size_t>(number);
-  throw std::invalid_argument(printable("stages: '" + pair.key + "': expected 0 to 1e9, found '" + pair.value + "'"));
+  constexpr double kMost = 1e9;
+  const auto number = parseNumber(pair.value);
+  return number && *number >= 0.0 && *number <= kMost ? number : std::nullopt;
 }
 }  // namespace
 
@@ -55,10 +49,12 @@ FrameFigures readStageMessage(const diagnostic_msgs::DiagnosticStatus& status)
   FrameFigures figures;
   for (const auto& pair : status.values)
   {
-    if (pair.key == "things") figures.things = countIn(pair);
-    if (pair.key == "instances") figures.instances = countIn(pair);
+    const auto number = numberIn(pair);
+    if (!number) continue;
+    if (pair.key == "things") figures.things = static_cast<std::size_t>(*number);
+    if (pair.key == "instances") figures.instances = static_cast<std::size_t>(*number);
     if (endsWithUnit(pair.key))
-      figures.stages.emplace_back(pair.key.substr(0, pair.key.size() - kUnit.size()), numberIn(pair));
+      figures.stages.emplace_back(pair.key.substr(0, pair.key.size() - kUnit.size()), *number);
   }
   return figures;
 }
