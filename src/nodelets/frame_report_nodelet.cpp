@@ -1,3 +1,4 @@
+#include "core/plain_numbers.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/drawing/scan_figure.h"
 #include "lidar_panoptic_clustering/pipeline/factory.h"
@@ -201,9 +202,7 @@ private:
       auto& [waiting, recent, shown] = tracks_[algorithm];
       if (!shown.cloud && !recent.empty()) shown = recent.rbegin()->second;
       if (!shown.cloud) continue;
-      char caption[32];
-      std::snprintf(caption, sizeof(caption), "%.1f ms", shown.milliseconds);
-      panels.push_back({algorithm, shown.cloud.get(), {}, caption});
+      panels.push_back({algorithm, shown.cloud.get(), {}, fixedText(shown.milliseconds, 1) + " ms"});
     }
     try
     {

@@ -1,5 +1,7 @@
 #include "ros/stream_diagnostics.h"
 
+#include "core/plain_numbers.h"
+
 #include <algorithm>
 
 namespace lidar_panoptic_clustering
@@ -85,14 +87,15 @@ void StreamDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& stat
   const std::uint64_t processed = counts_.processed - reported_.processed;
   summarize(status);
 
+  const PlainNumbers plain;
   status.addf("rate [Hz]", "%.2f", seconds > 0.0 ? static_cast<double>(processed) / seconds : 0.0);
   for (std::size_t i = 0; i < sums_.size() && processed > 0; ++i)
     status.addf(sums_[i].first + " [ms]", "mean %.3f, longest %.3f", sums_[i].second / static_cast<double>(processed),
                 longest_[i].second);
-  status.add("scans processed", counts_.processed);
-  status.add("scans dropped", counts_.overwritten + counts_.lacking);
-  status.add("scans refused", counts_.refused);
-  for (const auto& [name, value] : figures_) status.add(name, value);
+  status.add("scans processed", std::to_string(counts_.processed));
+  status.add("scans dropped", std::to_string(counts_.overwritten + counts_.lacking));
+  status.add("scans refused", std::to_string(counts_.refused));
+  for (const auto& [name, value] : figures_) status.add(name, std::to_string(value));
   status.add("last error", last_error_.empty() ? "none" : last_error_);
 
   last_report_ = now;
