@@ -1,3 +1,4 @@
+# shellcheck shell=bash
 # Sourced by ./check and ./demo: installs what is missing with apt, configures and builds. Sets `root`, the repository.
 
 root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
@@ -43,11 +44,17 @@ missing_packages() {
 
 install_dependencies() {
   ensure_localhost
-  local required missing as_root=()
+  local required
   mapfile -t required < <(required_packages)
+  install_packages "${required[@]}"
+}
+
+# Installs those of the packages given that are missing, as root or with sudo.
+install_packages() {
+  local missing as_root=()
   command -v dpkg-query > /dev/null ||
     fail "no dpkg here: expected Debian 12 or Ubuntu 20.04; on other systems install ROS 1 and PCL, then use cmake"
-  mapfile -t missing < <(missing_packages "${required[@]}")
+  mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -gt 0 ] || return 0
 
   if [ "$(id -u)" -ne 0 ]; then
