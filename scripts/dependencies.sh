@@ -37,12 +37,12 @@ can_use_sudo() {
   sudo -n true 2> /dev/null || { [ -t 0 ] && sudo -v; }
 }
 
-install_dependencies() {
-  local required missing as_root=() log
+# Installs with apt those of the packages given that are missing, as root or with sudo.
+install_packages() {
+  local missing as_root=() log
   command -v dpkg-query > /dev/null ||
     fail "no dpkg here: expected Debian 11 to 13 or Ubuntu 20.04; on other systems install ROS 1 and PCL, then use cmake"
-  mapfile -t required < <(required_packages)
-  mapfile -t missing < <(missing_packages "${required[@]}")
+  mapfile -t missing < <(missing_packages "$@")
   [ ${#missing[@]} -gt 0 ] || return 0
 
   if [ "$(id -u)" -ne 0 ]; then
@@ -59,4 +59,10 @@ install_dependencies() {
     fail "apt-get could not install the packages; its output is in $log"
   fi
   rm -f "$log"
+}
+
+install_dependencies() {
+  local required
+  mapfile -t required < <(required_packages)
+  install_packages "${required[@]}"
 }
