@@ -112,6 +112,12 @@ try
 
   ClassTable table;
   table.name_ = root["name"] ? root["name"].as<std::string>() : source;
+  if (root["minus_one"])
+  {
+    if (!root["minus_one"].IsScalar() || root["minus_one"].Scalar() != "ignored")
+      throw std::invalid_argument(source + ": minus_one must be 'ignored', or not there");
+    table.ignores_minus_one_ = true;
+  }
   table.classes_.push_back({"unknown", ClassKind::kIgnored, {}, 0x808080, 0, 0.0F, 0.0F, 0.0F, {}});
   table.groups_.push_back("");
 

@@ -28,7 +28,7 @@ namespace
 {
 struct ReportConfig
 {
-  std::string algorithm = "all";
+  std::string algorithm = "all";  ///< or names with commas between them
   int frames = 0;           ///< of each algorithm, then the process ends; 0 for no end
   double timeout_s = 15.0;  ///< without a new frame, then the process ends
   std::string picture;      ///< PNG file
@@ -37,9 +37,7 @@ struct ReportConfig
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
-    auto algorithms = algorithmNames();
-    algorithms.push_back("all");
-    visitor("algorithm", self.algorithm, algorithms);
+    visitor("algorithm", self.algorithm, std::vector<std::string>{});
     visitor("frames", self.frames, 0, 2147483647);
     visitor("timeout_s", self.timeout_s, 0.1, 1e6);
     visitor("picture", self.picture, std::vector<std::string>{});
@@ -132,7 +130,7 @@ private:
   void load()
   {
     applyParameters(config_, readParameters(getPrivateNodeHandle(), describeParameters(config_)));
-    algorithms_ = config_.algorithm == "all" ? algorithmNames() : std::vector<std::string>{config_.algorithm};
+    algorithms_ = algorithmsOfList(config_.algorithm);
     for (const auto& algorithm : algorithms_) tracks_[algorithm];
     output_.open(config_.report);
     report_ = std::make_unique<FrameReport>(algorithms_, static_cast<std::size_t>(config_.frames));

@@ -56,6 +56,12 @@ void StreamDiagnostics::setFigure(const std::string& name, std::uint64_t value)
   figures_[name] = value;
 }
 
+void StreamDiagnostics::setWarning(const std::string& warning)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  warning_ = warning;
+}
+
 bool StreamDiagnostics::noteError(const std::string& error)
 {
   last_error_ = error;
@@ -75,6 +81,8 @@ void StreamDiagnostics::summarize(diagnostic_updater::DiagnosticStatusWrapper& s
     status.summary(processed == 0 ? Level::ERROR : Level::WARN, "scans dropped: " + last_error_);
   else if (counts_.overwritten - reported_.overwritten > processed)
     status.summary(Level::WARN, "slower than the scans come: more than half of them dropped");
+  else if (!warning_.empty() && processed > 0)
+    status.summary(Level::WARN, warning_);
   else
     status.summary(Level::OK, processed > 0 ? "processing scans" : "no scans: no input, or nobody listens");
 }
