@@ -9,6 +9,7 @@ namespace lidar_panoptic_clustering
 void StreamDiagnostics::start(ros::NodeHandle& nh, ros::NodeHandle& private_nh, const std::string& name)
 {
   last_report_ = ros::WallTime::now();
+  if (ros::isShuttingDown()) return;  // a publisher made now is none, and publishing on it ends the process
   updater_ = std::make_unique<diagnostic_updater::Updater>(nh, private_nh, name);
   updater_->setHardwareID("none");
   updater_->add("scans", this, &StreamDiagnostics::report);
