@@ -125,8 +125,9 @@ void Organizer::followRows(const RawCloud& raw, const ScanFields& fields, Organi
     if (Grid{false, found.orientation, 0.0, 0.0, probe.staggeredColumns(found.orientation)}.isStaggered() &&
         orientation == found.orientation)
       contradicts("staggered columns");
-    if (!decision_.placement.row_of_line.empty() ? probe.agreement(found.orientation, decision_.placement.row_of_line) < kLeastAgreement
-                                       : !probe.highestFirst(found.orientation).value_or(true))
+    if (!decision_.placement.row_of_line.empty()
+            ? probe.agreement(found.orientation, decision_.placement.row_of_line) < kLeastAgreement
+            : !probe.highestFirst(found.orientation).value_or(true))
       contradicts("sequence of rows");
     if (!orientation && climbs(probe, found.orientation) && found.doubt.empty()) contradicts("no scan lines");
   }

@@ -45,8 +45,8 @@ public:
   /// Of what was looked at last.
   const LayoutProbe& probe() const { return probe_; }
 
-  /// Orders the scan lines of a grid by elevation. `points`: of the whole cloud by row-major index of the view, `width`:
-  /// of the view. Linear.
+  /// Orders the scan lines of a grid by elevation. `points`: of the whole cloud by row-major index of the view,
+  /// `width`: of the view. Linear.
   const RingOrder& orderLines(const std::vector<ScanPoint>& points, std::uint32_t width, Orientation orientation);
 
 private:
