@@ -86,7 +86,9 @@ void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& d
   FoundLayout& found = decision.found;
   const RingOrder& order = grid_.orderLines(out.points, view.width, found.orientation);
   if (order.tellsNothing() && found.doubt.empty()) throwNoGrid(view, out.points);
-  if (order.isMonotone() || order.areDistinct())
+  const bool clear = order.isMonotone() || order.areDistinct();
+  if (found.reshaped && !clear) throwNoGrid(view, out.points);
+  if (clear)
   {
     decision.placement.row_of_line = order.rowOfRing();
   }
