@@ -1,6 +1,8 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
+#include "ros/linking.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 #include "ros/pose_message.h"
 
@@ -90,12 +92,16 @@ private:
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
     auto& nh = getPrivateNodeHandle();
-    output_ = nh.advertise<LabelledCloud>("output", kQueue);
-    ground_truth_ = nh.advertise<PanopticCloud>("ground_truth", kQueue);
-    broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    output_ = advertiseAlone<LabelledCloud>(nh, "output", kQueue);
+    ground_truth_ = advertiseAlone<PanopticCloud>(nh, "ground_truth", kQueue);
+    {
+      const std::lock_guard<std::mutex> lock(linkMutex());
+      broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    }
     // a wall timer, so that it plays also with use_sim_time while nobody publishes /clock
     timer_ =
         nh.createWallTimer(ros::WallDuration(1.0 / config_.rate_hz), [this](const ros::WallTimerEvent&) { tick(); });
@@ -104,6 +110,8 @@ private:
   void load()
   {
     const auto& nh = getPrivateNodeHandle();
+    warnOfUnusedParameters(
+        nh, namesOf(describeParameters(config_), {"frame_id", "class_table", "dataset", "sequence", "semantics"}));
     applyParameters(config_, readParameters(nh, describeParameters(config_)));
     frame_id_ = readFrameId(nh);
     table_ = std::make_unique<ClassTable>(ClassTable::load(readText(nh, "class_table", "semantic_kitti")));
