@@ -144,6 +144,7 @@ private:
 
   void tick()
   {
+    if (ros::isShuttingDown()) return;  // publishing on what was advertised while ROS ended is fatal
     if (!started_ && output_.getNumSubscribers() < static_cast<std::uint32_t>(config_.wait_for_subscribers)) return;
     started_ = true;
     try
