@@ -1,6 +1,8 @@
 // Prediction files in other numberings than the class table's, and of other number types.
 #include "lidar_panoptic_clustering/datasets/predicted_classes.h"
 
+#include "lidar_panoptic_clustering/core/label_numbering.h"
+
 #include "recorded_data.h"
 #include "tiny_dataset.h"
 
@@ -126,6 +128,29 @@ TEST(RecordedPredictions, AreTakenForRawIdsWithoutDoubt)
       EXPECT_EQ(predicted.doubt(), "") << name;
       EXPECT_NE(errorOf([&] { PredictedClasses(sequence, kittiTable(), "semantic_kitti_training"); }), "") << name;
     }
+}
+
+TEST(RecordedLabels, AreOfTheirTableInEveryScan)
+{
+  REQUIRE_RECORDED_DATA(data);
+  const std::string root = data + "/semantickitti";
+  PointProjector projector{ProjectionConfig()};
+  std::vector<ScanPoint> points;
+  std::vector<std::uint32_t> labels;
+  Projection image;
+  for (const std::string& name : semanticKittiSequences(root))
+  {
+    const SemanticKittiSequence sequence(root, name);
+    LabelNumbering numbering(kittiTable(), {});
+    for (std::size_t scan = 0; scan < sequence.size(); ++scan)
+    {
+      sequence.readScan(scan, points);
+      sequence.readLabels(scan, points.size(), labels);
+      projector.project(points, labels, image);
+      EXPECT_NO_THROW(numbering.check(image.cloud)) << name << " " << scan;
+      EXPECT_EQ(numbering.doubt(), "") << name << " " << scan;
+    }
+  }
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering
