@@ -283,6 +283,7 @@ std::optional<Organizer::Decision> Organizer::decideUnfolded(const RawCloud& raw
 
 void Organizer::place(std::uint32_t rows, Decision& decision, OrganizedScan& out)
 {
+  constexpr double kEven = 0.06;  // of returns hidden in columns that fit the firings
   FoundLayout& found = decision.found;
   if (!decision.firm)
   {
@@ -302,7 +303,7 @@ void Organizer::place(std::uint32_t rows, Decision& decision, OrganizedScan& out
     // few returns, or azimuths that vary, look like fewer firings
     found.columns *= 2;
     project(rows, found.columns, out);
-    hidden = hiddenShare(most, out);
+    if (hiddenShare(kEven, out) <= kEven) hidden = 0.0;
   }
   if (hidden > most) throwHidden(hidden, most);
   if (decision.firm) return;

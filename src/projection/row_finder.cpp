@@ -128,7 +128,7 @@ bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
   const std::uint32_t rings = unfolded_rings_;
   if (rings < 2 || rings > kMostRings) return false;
   if (rows > 0 && (rings > rows || 2 * rings < rows)) return false;
-  if (5 * elevation_steps_ < 4 * (rings - 1) || forward_ < 3 * backward_) return false;
+  if (20 * elevation_steps_ < 19 * (rings - 1) || forward_ < 3 * backward_) return false;
   return order_.isMonotone() || order_.areDistinct();
 }
 
