@@ -109,6 +109,7 @@ private:
 
   void tick()
   {
+    if (ros::isShuttingDown()) return;  // publishing on what was advertised while ROS ended is fatal
     if (frames_ > 0 && published_ >= frames_) return timer_.stop();
     const std::uint64_t frame = frame_++;
     pcl::PCLHeader header;

@@ -34,10 +34,10 @@ private:
 
 [[noreturn]] void throwNoScanLines(std::size_t points)
 {
-  throw std::invalid_argument("expected scan lines (rows of an organised cloud), found one row of " +
-                              std::to_string(points) +
-                              " points that do not come in one sweep, as of a lidar without scan lines or of several "
-                              "lidars merged: use an algorithm that works on points alone (birds_eye, euclidean, supervoxel)");
+  throw std::invalid_argument(
+      "expected scan lines (rows of an organised cloud), found one row of " + std::to_string(points) +
+      " points that do not come in one sweep, as of a lidar without scan lines or of several "
+      "lidars merged: use an algorithm that works on points alone (birds_eye, euclidean, supervoxel)");
 }
 /// The name of its class, "my_package::MyClusterer".
 std::string nameOf(const Clusterer& clusterer)

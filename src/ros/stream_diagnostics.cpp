@@ -27,6 +27,7 @@ void StreamDiagnostics::start(ros::NodeHandle& nh, ros::NodeHandle& private_nh, 
 {
   idle_ = std::move(idle);
   last_report_ = last_sign_ = ros::WallTime::now();
+  if (ros::isShuttingDown()) return;  // a publisher made now is none, and publishing on it ends the process
   {
     const std::lock_guard<std::mutex> lock(linkMutex());
     updater_ = std::make_unique<diagnostic_updater::Updater>(nh, private_nh, name);
