@@ -96,7 +96,7 @@ class Documentation(unittest.TestCase):
         known = {name for path in (ROOT / 'launch').glob('*.launch')
                  for name in re.findall(r'<arg name="(\w+)"', path.read_text())}
         for page in pages(ROOT):
-            for argument in re.findall(r'(?<![\w/])(\w+):=', page.read_text()):
+            for argument in re.findall(r'(?<![\w/~])([a-z]\w*):=', page.read_text()):
                 self.assertIn(argument, known | OF_DRIVERS, page.name)
 
     def test_every_parameter_is_documented(self):
