@@ -25,18 +25,17 @@ ObjectErrorCounts objectErrorCountsFromJson(const nlohmann::json& json);
 /// A scan that could not be evaluated.
 struct SkippedScan
 {
-  std::string scan;    ///< "sequence/scan", 08/000123
-  std::string reason;  ///< with what was expected and found
+  std::string scan;  ///< "sequence/scan", 08/000123
+  std::string reason;
 };
 
 /// What an evaluation leaves behind: counts that can be merged, saved and loaded without loss.
 struct EvaluationReport
 {
-  PanopticQuality quality;           ///< over all scans
-  ObjectErrorCounts objects;         ///< over all scans
-  std::vector<SkippedScan> skipped;  ///< in the order of the scans
+  PanopticQuality quality;
+  ObjectErrorCounts objects;
+  std::vector<SkippedScan> skipped;
 
-  /// Empty; unmatched segments of fewer points than `min_points` will not count.
   explicit EvaluationReport(std::shared_ptr<const ClassTable> table, int min_points = 50)
       : quality(std::move(table), min_points)
   {

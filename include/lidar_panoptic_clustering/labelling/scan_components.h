@@ -13,9 +13,9 @@ namespace lidar_panoptic_clustering
 /// Returns above the ground that hang together, and what of them tells an object from a wall or a tree.
 struct ScanComponent
 {
-  std::uint32_t point_count = 0;    ///< its returns
+  std::uint32_t point_count = 0;
   float bottom = 0.0F, top = 0.0F;  ///< [m] above the ground
-  Footprint footprint;              ///< in bird's-eye view
+  Footprint footprint;
 
   bool open_top = false;  ///< goes up to the highest beams: there may be more of it above
 
@@ -37,7 +37,7 @@ struct ScanComponent
 class ScanComponents
 {
 public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;  ///< no component
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   /// Takes the returns at least `above` [m] over the ground. `full_turn`: the last column is the first one's neighbour.
   /// Rows may run from the highest beam down or from the lowest up.
