@@ -23,6 +23,7 @@ public:
   /// looked at so; for streams whose rings keep their numbers.
   void look(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions, std::uint32_t rings,
             bool remember = false);
+  /// Begins anew, for another stream.
   void forget() { remembered_.clear(); }
 
   /// By ring: its row, 0 for the highest. Numbers that rise or fall with the elevation keep their sequence, rings
