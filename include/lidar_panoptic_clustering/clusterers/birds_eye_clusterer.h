@@ -5,6 +5,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// The parameters of BirdsEyeClusterer.
 struct BirdsEyeConfig
 {
   double distance_m = 0.0;  ///< points closer than this, and than the link distance, are one object; 0: the latter only
@@ -25,6 +26,7 @@ struct BirdsEyeConfig
 class BirdsEyeClusterer : public Clusterer
 {
 public:
+  /// For the factory.
   using Config = BirdsEyeConfig;
 
   /// Throws std::invalid_argument on a value outside its range.
@@ -32,6 +34,7 @@ public:
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
 
+  /// Of the last scan, for tests that bound the work.
   const PlanarCells& cells() const { return cells_; }
 
 private:

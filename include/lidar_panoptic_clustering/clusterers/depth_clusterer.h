@@ -5,6 +5,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// The parameters of DepthClusterer.
 struct DepthConfig
 {
   double theta_deg = 10.0;      ///< smallest angle between the line of sight and the line through both points
@@ -33,6 +34,7 @@ struct DepthConfig
 class DepthClusterer : public Clusterer
 {
 public:
+  /// For the factory.
   using Config = DepthConfig;
 
   /// Throws std::invalid_argument on a value outside its range.

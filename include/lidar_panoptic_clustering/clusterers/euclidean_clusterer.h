@@ -8,6 +8,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// The parameters of EuclideanClusterer.
 struct EuclideanConfig
 {
   double distance_m = 0.0;  ///< points closer than this, and than the link distance, are one object; 0: the latter only
@@ -32,6 +33,7 @@ struct EuclideanConfig
 class EuclideanClusterer : public Clusterer
 {
 public:
+  /// For the factory.
   using Config = EuclideanConfig;
 
   /// Throws std::invalid_argument on a value outside its range.

@@ -22,10 +22,13 @@ public:
     for (std::uint32_t i = 0; i < scan.size(); ++i) things_[next_[scan.link[i]]++] = i;
   }
 
+  /// Number of link keys, those without points included.
   std::size_t count() const { return begin_.size() - 1; }
   /// Indices into the ThingScan, ascending.
   const std::uint32_t* begin(std::size_t group) const { return things_.data() + begin_[group]; }
+  /// Behind the last one.
   const std::uint32_t* end(std::size_t group) const { return things_.data() + begin_[group + 1]; }
+  /// Points of a key.
   std::size_t size(std::size_t group) const { return begin_[group + 1] - begin_[group]; }
 
 private:

@@ -5,6 +5,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// The parameters of ScanLineRunClusterer.
 struct ScanLineRunConfig
 {
   double run_distance_m = 0.5;   ///< consecutive points of a scan line closer than this form a run
@@ -37,6 +38,7 @@ struct ScanLineRunConfig
 class ScanLineRunClusterer : public Clusterer
 {
 public:
+  /// For the factory.
   using Config = ScanLineRunConfig;
 
   /// Throws std::invalid_argument on a value outside its range.

@@ -7,6 +7,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// The parameters of SupervoxelClusterer.
 struct SupervoxelConfig
 {
   double voxel_m = 0.5;         ///< edge of a voxel
@@ -37,6 +38,7 @@ struct SupervoxelConfig
 class SupervoxelClusterer : public Clusterer
 {
 public:
+  /// For the factory.
   using Config = SupervoxelConfig;
 
   /// Throws std::invalid_argument on a value outside its range.

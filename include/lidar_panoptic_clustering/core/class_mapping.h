@@ -21,6 +21,7 @@ public:
   /// An id that no class table names.
   static constexpr std::uint32_t kUnmapped = 0xFFFFFFFFU;
 
+  /// Of raw ids of `from` to canonical ones of `to`. Keeps neither. Linear in the ids.
   ClassMapping(const ClassTable& from, const ClassTable& to);
 
   /// The canonical raw id of the target's class, for any 32-bit id: one load from a flat array.

@@ -19,18 +19,20 @@ enum class ClassKind : std::uint8_t
   kThing
 };
 
+/// A class as its table describes it.
 struct ClassInfo
 {
-  std::string name;
-  ClassKind kind = ClassKind::kIgnored;
-  std::vector<std::uint32_t> ids;  ///< raw ids; the first is the canonical one, written to prediction files
-  std::uint32_t rgb = 0;           ///< 0x00RRGGBB
-  std::uint8_t group = 0;          ///< classes a network confuses share a group, see ClassTable::groupName
-  float length_m = 0.0F;           ///< usual size in bird's-eye view, length >= width; things only
-  float width_m = 0.0F;
-  float link_distance_m = 0.0F;      ///< the widest gap between neighbouring points of one object; things only
-  std::vector<std::string> aliases;  ///< names of other tables' classes that this one covers, the nearest first
+  std::string name;                      ///< unique in its table
+  ClassKind kind = ClassKind::kIgnored;  ///< what becomes of its points
+  std::vector<std::uint32_t> ids;        ///< raw ids; the first is the canonical one, written to prediction files
+  std::uint32_t rgb = 0;                 ///< 0x00RRGGBB
+  std::uint8_t group = 0;                ///< classes a network confuses share a group, see ClassTable::groupName
+  float length_m = 0.0F;                 ///< usual size in bird's-eye view, length >= width; things only
+  float width_m = 0.0F;                  ///< see length_m [m]
+  float link_distance_m = 0.0F;          ///< the widest gap between neighbouring points of one object; things only
+  std::vector<std::string> aliases;      ///< names of other tables' classes that this one covers, the nearest first
 
+  /// Whether its points are clustered.
   bool isThing() const { return kind == ClassKind::kThing; }
 };
 
@@ -44,10 +46,12 @@ public:
   /// Throws std::runtime_error when there is no such file, std::invalid_argument when its content is wrong;
   /// both name the file, the class, and what was expected.
   static ClassTable load(const std::string& name_or_path);
+  /// The same from YAML text; `source` stands in its place in messages.
   static ClassTable parse(const std::string& yaml, const std::string& source);
   /// The tables that ship with the package.
   static std::vector<std::string> shippedNames();
 
+  /// As the file says, "semantic_kitti".
   const std::string& name() const { return name_; }
 
   /// kUnknownClass for ids outside the table.
@@ -60,6 +64,7 @@ public:
   {
     return raw_id < kind_of_id_.size() ? kind_of_id_[raw_id] : ClassKind::kIgnored;
   }
+  /// The class colour of a raw id, 0x00RRGGBB.
   std::uint32_t rgbOf(std::uint32_t raw_id) const
   {
     return raw_id < rgb_of_id_.size() ? rgb_of_id_[raw_id] : classes_[kUnknownClass].rgb;
@@ -69,12 +74,15 @@ public:
   /// The class that has `name` among its aliases; kUnknownClass where there is none.
   ClassIndex findByAlias(const std::string& name) const;
 
+  /// `index` has to be below size().
   const ClassInfo& operator[](ClassIndex index) const { return classes_[index]; }
   /// Number of classes, the unknown class at index 0 included: valid indices are 0..size()-1.
   std::size_t size() const { return classes_.size(); }
   /// Whether -1 stands for no class in this convention ("minus_one: ignored").
   bool ignoresMinusOne() const { return ignores_minus_one_; }
+  /// `group` has to be below groupCount().
   const std::string& groupName(std::uint8_t group) const { return groups_[group]; }
+  /// Number of groups of confusable classes.
   std::size_t groupCount() const { return groups_.size(); }
 
 private:

@@ -29,13 +29,15 @@ std::string idText(std::uint32_t id);
 class LabelNumbering
 {
 public:
+  /// What the table is, and what counts against it.
   struct Config
   {
     bool chosen = false;              ///< somebody named the table; else it stands for want of another
     double max_unknown_labels = 0.0;  ///< share of the labelled returns whose id the table may lack
-    bool check_shapes = true;
+    bool check_shapes = true;         ///< whether what the ids lie on is looked at
   };
 
+  /// `table`: what the ids are read by; never null.
   LabelNumbering(std::shared_ptr<const ClassTable> table, const Config& config);
 
   /// Takes one more scan: `image` by its scan lines (those of one row have no shapes), where pixels without a return

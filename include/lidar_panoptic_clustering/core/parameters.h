@@ -21,12 +21,13 @@ using ParameterMap = std::map<std::string, ParameterValue>;
 /// Distances that 0 switches off are this or more where they are on [m]: below lies the rounding of coordinates.
 constexpr double kLeastDistanceM = 0.001;
 
+/// What is known of one parameter.
 struct ParameterInfo
 {
-  std::string name;
-  ParameterValue value;  ///< of the member's own type
-  double min = 0.0, max = 0.0;
-  std::vector<std::string> choices;
+  std::string name;                  ///< as in the config's visit()
+  ParameterValue value;              ///< of the member's own type
+  double min = 0.0, max = 0.0;       ///< range of a number, both ends included
+  std::vector<std::string> choices;  ///< of a text; empty for free text
 };
 
 /// As a command line takes it: true, 5, 0.35.

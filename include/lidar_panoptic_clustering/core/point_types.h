@@ -14,9 +14,9 @@ namespace lidar_panoptic_clustering
 /// A return with the class a semantic network gave it. 32 bytes.
 struct EIGEN_ALIGN16 LabelledPoint
 {
-  PCL_ADD_POINT4D  ///< x, y, z [m], sensor frame
-      float intensity = 0.0F;
-  std::uint32_t label = 0;  ///< raw class id of the label source, see ClassTable
+  PCL_ADD_POINT4D              ///< x, y, z [m], sensor frame
+      float intensity = 0.0F;  ///< as the driver gives it
+  std::uint32_t label = 0;     ///< raw class id of the label source, see ClassTable
 
   LabelledPoint() { x = y = z = 0.0F, data[3] = 1.0F; }
   EIGEN_MAKE_ALIGNED_OPERATOR_NEW
@@ -26,8 +26,8 @@ struct EIGEN_ALIGN16 LabelledPoint
 struct EIGEN_ALIGN16 PanopticPoint
 {
   PCL_ADD_POINT4D
-  float intensity = 0.0F;
-  std::uint32_t label = 0;
+  float intensity = 0.0F;      ///< as the driver gives it
+  std::uint32_t label = 0;     ///< raw class id, the canonical one where a vote changed it
   std::uint32_t instance = 0;  ///< 0: no instance; 1..n within the frame
   std::uint32_t rgb = 0;       ///< 0x00RRGGBB: class colour for stuff, one colour an instance for things
 

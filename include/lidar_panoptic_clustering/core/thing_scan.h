@@ -26,8 +26,8 @@ ClassPolicy classPolicyFromName(const std::string& name);
 /// A return of a thing class.
 struct ThingPoint
 {
-  float x, y, z;  ///< [m], sensor frame
-  std::uint32_t column;
+  float x, y, z;         ///< [m], sensor frame
+  std::uint32_t column;  ///< firing, 0-based
 };
 
 /// The thing points of an organised scan, scan line by scan line, each line by column: what clusterers work on.
@@ -41,9 +41,9 @@ struct ThingScan
   bool full_turn = true;      ///< whether the last column is the first one's neighbour
   float column_angle = 0.0F;  ///< azimuth between neighbouring columns [rad]
 
-  std::vector<ThingPoint> points;
-  std::vector<std::uint8_t> link;
-  std::vector<ClassIndex> class_index;
+  std::vector<ThingPoint> points;         ///< row-major
+  std::vector<std::uint8_t> link;         ///< key: class, group or 0, as the class policy says
+  std::vector<ClassIndex> class_index;    ///< in the class table
   std::vector<std::uint32_t> line_begin;  ///< rows + 1 entries: line r is [line_begin[r], line_begin[r + 1])
   std::uint32_t link_count = 0;           ///< link < link_count
   std::uint32_t class_count = 0;          ///< class_index < class_count
@@ -52,6 +52,7 @@ struct ThingScan
 
   std::vector<std::uint32_t> unknown_labels;  ///< up to 16 raw ids of this scan that the class table does not name
 
+  /// Number of thing points.
   std::size_t size() const { return points.size(); }
 
   /// The widest gap between points i and j of one object [m]: of two classes the narrower.
@@ -64,13 +65,14 @@ struct ThingScan
 /// "auto", "full_turn", "sector"
 const std::vector<std::string>& fieldOfViewNames();
 
+/// What is selected, and which points may share an instance.
 struct SelectionConfig
 {
   double max_range_m = 300.0;  ///< returns beyond count as no return
   /// Whether the scan closes on itself; "auto": told from the azimuth its columns span, for each scan.
   std::string field_of_view = "auto";
-  std::string class_policy = "class";
-  double link_distance_scale = 1.0;  ///< factor on the class table's link distances
+  std::string class_policy = "class";  ///< see classPolicyNames()
+  double link_distance_scale = 1.0;    ///< factor on the class table's link distances
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)

@@ -34,7 +34,9 @@ public:
   /// there is noticed when it is read. Throws when there is no such folder, or it holds no scan.
   SemanticKittiSequence(const std::string& root, const std::string& name, const std::string& predictions_root = "");
 
+  /// "08".
   const std::string& name() const { return name_; }
+  /// Number of scans.
   std::size_t size() const { return scan_names_.size(); }
   /// The scan's file name without its ending, "000000".
   const std::string& scanName(std::size_t scan) const { return scan_names_.at(scan); }

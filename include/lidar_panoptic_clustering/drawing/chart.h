@@ -15,10 +15,11 @@ constexpr std::uint32_t kSeriesColor = 0xFF000000;
 /// Lets the chart choose an end of an axis from the values.
 constexpr double kFromValues = std::numeric_limits<double>::quiet_NaN();
 
+/// An axis of a chart.
 struct Axis
 {
-  std::string title;  ///< with the unit: "time [ms]"
-  bool logarithmic = false;
+  std::string title;                            ///< with the unit: "time [ms]"
+  bool logarithmic = false;                     ///< to base ten
   double min = kFromValues, max = kFromValues;  ///< rounded outwards to the next tick
 };
 
@@ -26,54 +27,57 @@ struct Axis
 struct ReferenceLine
 {
   double value = 0.0;  ///< on the y axis
-  std::string text;
+  std::string text;    ///< stands at the line
 };
 
 /// What all charts share.
 struct ChartFrame
 {
-  std::string title;
-  std::string subtitle;  ///< e.g. data and machine; none when empty
-  std::vector<ReferenceLine> references;
-  int width_px = 1600, height_px = 900;  ///< each 320..8192
+  std::string title;                      ///< above the chart
+  std::string subtitle;                   ///< e.g. data and machine; none when empty
+  std::vector<ReferenceLine> references;  ///< across the chart
+  int width_px = 1600, height_px = 900;   ///< each 320..8192
 };
 
 /// Grouped bars: in each category one bar a series.
 struct BarChart
 {
+  /// What belongs together: one colour, one name.
   struct Series
   {
-    std::string name;
-    std::vector<double> values;  ///< one a category; NaN draws no bar
-    std::uint32_t rgb = kSeriesColor;
+    std::string name;                  ///< for the legend
+    std::vector<double> values;        ///< one a category; NaN draws no bar
+    std::uint32_t rgb = kSeriesColor;  ///< 0x00RRGGBB, or left to the chart
   };
 
-  ChartFrame frame;
-  Axis y;  ///< linear; 0 is always on it
-  std::vector<std::string> categories;
-  std::vector<Series> series;
-  int decimals = 1;  ///< of the values written at the bars; below 0 writes none
+  ChartFrame frame;                     ///< what all charts share
+  Axis y;                               ///< linear; 0 is always on it
+  std::vector<std::string> categories;  ///< from left to right
+  std::vector<Series> series;           ///< in the order of the legend
+  int decimals = 1;                     ///< of the values written at the bars; below 0 writes none
 };
 
 /// Lines, points or both.
 struct LineChart
 {
+  /// A place in the chart.
   struct Point
   {
     double x = 0.0, y = 0.0;  ///< where either is NaN there is no point and the line is broken
   };
+  /// What belongs together: one colour, one name.
   struct Series
   {
-    std::string name;
-    std::vector<Point> points;  ///< lines join them in this order
-    bool line = true;
-    bool markers = true;
-    std::uint32_t rgb = kSeriesColor;
+    std::string name;                  ///< for the legend
+    std::vector<Point> points;         ///< lines join them in this order
+    bool line = true;                  ///< whether the points are joined
+    bool markers = true;               ///< whether each point has a mark
+    std::uint32_t rgb = kSeriesColor;  ///< 0x00RRGGBB, or left to the chart
   };
 
-  ChartFrame frame;
-  Axis x, y;
-  std::vector<Series> series;
+  ChartFrame frame;            ///< what all charts share
+  Axis x, y;                   ///< the lower and the left one
+  std::vector<Series> series;  ///< in the order of the legend
 };
 
 /// Draws the chart as a PNG, written aside and renamed. A legend stands on top when there are two series or more.

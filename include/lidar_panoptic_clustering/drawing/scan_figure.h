@@ -13,8 +13,8 @@ namespace lidar_panoptic_clustering
 /// A ring around a place in bird's-eye view, e.g. an object that was wrongly split or merged.
 struct Mark
 {
-  float x = 0.0F, y = 0.0F;  ///< centre [m], sensor frame
-  float radius_m = 2.0F;
+  float x = 0.0F, y = 0.0F;      ///< centre [m], sensor frame
+  float radius_m = 2.0F;         ///< of the ring
   std::uint32_t rgb = 0xFF4040;  ///< 0x00RRGGBB
   std::string text;              ///< short; stands beside the ring
 };
@@ -24,9 +24,9 @@ struct ScanPanel
 {
   std::string title;                     ///< e.g. the algorithm's name
   const PanopticCloud* cloud = nullptr;  ///< row-major, height = scan lines; has to outlive the call
-  std::vector<Mark> marks;
-  std::string caption;            ///< stands after the counts of returns, thing points and instances
-  std::vector<NamedBox> boxes{};  ///< drawn around the objects, from above; text beside them
+  std::vector<Mark> marks;               ///< over the points
+  std::string caption;                   ///< stands after the counts of returns, thing points and instances
+  std::vector<NamedBox> boxes{};         ///< drawn around the objects, from above; text beside them
 };
 
 /// What the marks of a colour mean, for the legend.
@@ -39,7 +39,7 @@ struct MarkMeaning
 /// The part of the ground a bird's-eye view shows [m], sensor frame.
 struct ViewWindow
 {
-  double min_x = -50.0, max_x = 50.0, min_y = -25.0, max_y = 25.0;
+  double min_x = -50.0, max_x = 50.0, min_y = -25.0, max_y = 25.0;  ///< what is seen, ends included
 
   /// Along x [m].
   double width() const { return max_x - min_x; }

@@ -19,7 +19,7 @@ struct Camera
 /// How drawStreetPicture draws.
 struct StreetPictureOptions
 {
-  Camera camera;
+  Camera camera;                         ///< where it is seen from
   int width_px = 1600, height_px = 720;  ///< each 160..8192; points, lines and text grow with the width
   double farthest_named_m = 45.0;        ///< boxes farther from the eye stand without their text
 };

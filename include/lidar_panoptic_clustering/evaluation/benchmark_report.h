@@ -14,8 +14,8 @@ namespace lidar_panoptic_clustering
 /// One algorithm with one setting.
 struct BenchmarkRow
 {
-  std::string name;  ///< the algorithm and what was set, "depth theta_deg=5"
-  EvaluationReport evaluation;
+  std::string name;              ///< the algorithm and what was set, "depth theta_deg=5"
+  EvaluationReport evaluation;   ///< quality
   std::vector<FrameTime> times;  ///< by scan; of scans without ground truth too
 };
 
@@ -24,9 +24,9 @@ struct BenchmarkReport
 {
   std::string semantics;                       ///< "ground truth", or the folder the classes were read from
   std::map<std::string, std::uint64_t> scans;  ///< evaluated, by sequence
-  bool interrupted = false;
-  EvaluationReport before;  ///< the semantics alone, with no instances
-  std::vector<BenchmarkRow> rows;
+  bool interrupted = false;                    ///< whether some scans are missing
+  EvaluationReport before;                     ///< the semantics alone, with no instances
+  std::vector<BenchmarkRow> rows;              ///< in the order of the table
 
   /// Rows called `names`, with nothing counted yet.
   BenchmarkReport(std::string semantics, const std::vector<std::string>& names,

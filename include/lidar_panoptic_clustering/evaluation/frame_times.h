@@ -11,15 +11,16 @@ namespace lidar_panoptic_clustering
 /// Wall time of one scan, taken in one thread.
 struct FrameTime
 {
-  std::string scan;  ///< "sequence/scan", 08/000123
-  std::uint32_t points = 0, thing_points = 0;
-  double cluster_ms = 0.0;   ///< the algorithm alone
-  double pipeline_ms = 0.0;  ///< from the organised cloud to the painted one
+  std::string scan;                            ///< "sequence/scan", 08/000123
+  std::uint32_t points = 0, thing_points = 0;  ///< of the scan
+  double cluster_ms = 0.0;                     ///< the algorithm alone
+  double pipeline_ms = 0.0;                    ///< from the organised cloud to the painted one
 };
 
+/// Of many scans.
 struct TimeSummary
 {
-  double median_ms = 0.0, p95_ms = 0.0, max_ms = 0.0;
+  double median_ms = 0.0, p95_ms = 0.0, max_ms = 0.0;  ///< [ms]
 };
 
 /// Median (the mean of the middle two), 95th percentile (nearest rank) and maximum of a member of FrameTime; zeros

@@ -19,18 +19,22 @@ enum class ObjectOutcome : std::uint8_t
 /// A thing segment of the truth with at least min_points points.
 struct TrueObject
 {
-  Segment segment;
-  ObjectOutcome outcome = ObjectOutcome::kMissed;
+  Segment segment;                                 ///< the true one
+  ObjectOutcome outcome = ObjectOutcome::kMissed;  ///< what became of it
 };
 
 /// Numbers of true objects by outcome; sums, so that parts can be added.
 struct ObjectErrorCounts
 {
-  std::uint64_t matched = 0, split = 0, merged = 0, missed = 0;
+  std::uint64_t matched = 0, split = 0, merged = 0, missed = 0;  ///< true objects with this outcome
 
+  /// All true objects.
   std::uint64_t total() const { return matched + split + merged + missed; }
+  /// Counts one object.
   void add(ObjectOutcome outcome);
+  /// Of two sets of scans together.
   ObjectErrorCounts& operator+=(const ObjectErrorCounts& other);
+  /// All four alike.
   bool operator==(const ObjectErrorCounts& other) const;
 };
 
@@ -50,6 +54,7 @@ struct ObjectErrorCounts
 class ObjectErrors
 {
 public:
+  /// True objects of fewer points than `min_points` are not judged.
   explicit ObjectErrors(int min_points = 50) : min_points_(min_points) {}
 
   /// The true objects of a scan, in order of their first point; valid until the next call. Linear in the overlaps.

@@ -14,14 +14,18 @@ namespace lidar_panoptic_clustering
 /// so the sum is kept as an integer.
 struct ExactSum
 {
-  static constexpr int kFractionBits = 53;
+  static constexpr int kFractionBits = 53;  ///< of the fixed point
 
-  std::uint64_t whole = 0;
+  std::uint64_t whole = 0;     ///< before the point
   std::uint64_t fraction = 0;  ///< in units of 2^-53, below 2^53
 
+  /// `value`: 0 to 1.
   void add(double value);
+  /// The same in any order.
   ExactSum& operator+=(const ExactSum& other);
+  /// Rounded once.
   double value() const;
+  /// Bit for bit.
   bool operator==(const ExactSum& other) const { return whole == other.whole && fraction == other.fraction; }
 };
 
@@ -35,23 +39,27 @@ struct ClassCounts
 
   double sq() const;  ///< segmentation quality: mean IoU of the true positives; 0 without any
   double rq() const;  ///< recognition quality: tp / (tp + fp/2 + fn/2); 0 where the class does not occur
+  /// Panoptic quality, 0 to 1.
   double pq() const { return sq() * rq(); }
   double iou() const;  ///< of the points' classes, whatever the instance; 0 where the class does not occur
+  /// Whether there was a segment of the class at all.
   bool occurs() const { return tp + fp + fn > 0; }
 
+  /// Of two sets of scans together.
   ClassCounts& operator+=(const ClassCounts& other);
+  /// All counts alike.
   bool operator==(const ClassCounts& other) const;
 };
 
 /// Means over the classes, absent ones as 0, each in [0, 1].
 struct PanopticFigures
 {
-  double pq = 0.0, rq = 0.0, sq = 0.0;
-  double pq_dagger = 0.0;  ///< IoU instead of PQ for stuff [Porzi 2019]
-  double pq_th = 0.0, rq_th = 0.0, sq_th = 0.0;
-  double pq_st = 0.0, rq_st = 0.0, sq_st = 0.0;
-  double miou = 0.0;
-  double pq_th_present = 0.0;  ///< mean PQ of the thing classes with tp + fp + fn > 0
+  double pq = 0.0, rq = 0.0, sq = 0.0;           ///< means over all classes, absent ones as 0
+  double pq_dagger = 0.0;                        ///< IoU instead of PQ for stuff [Porzi 2019]
+  double pq_th = 0.0, rq_th = 0.0, sq_th = 0.0;  ///< over thing classes
+  double pq_st = 0.0, rq_st = 0.0, sq_st = 0.0;  ///< over stuff classes
+  double miou = 0.0;                             ///< mean IoU of the classes
+  double pq_th_present = 0.0;                    ///< mean PQ of the thing classes with tp + fp + fn > 0
 };
 
 /// Panoptic quality [Kirillov 2019] by the rules of SemanticKITTI's official evaluator [Behley 2021], a scan at a time.
@@ -80,9 +88,13 @@ public:
 
   /// By ClassIndex; zero for classes that are not evaluated.
   const std::vector<ClassCounts>& classes() const { return counts_; }
+  /// Of all scans added. Linear in the classes.
   PanopticFigures figures() const;
+  /// Scans added.
   std::uint64_t scanCount() const { return scan_count_; }
+  /// Below which unmatched segments do not count.
   int minPoints() const { return min_points_; }
+  /// Of the labels.
   const ClassTable& table() const { return overlaps_.table(); }
   /// The segments of the scan added last.
   const SegmentOverlaps& lastScan() const { return overlaps_; }

@@ -12,8 +12,8 @@ namespace lidar_panoptic_clustering
 /// The labels of a scan's points, in one of the two forms they come in. Does not own the arrays.
 struct ScanLabels
 {
-  const std::uint32_t* semantic = nullptr;
-  const std::uint32_t* instance = nullptr;
+  const std::uint32_t* semantic = nullptr;  ///< raw class ids, or packed labels
+  const std::uint32_t* instance = nullptr;  ///< null where labels are packed
 
   /// SemanticKITTI's form: raw class id in the low 16 bits, instance in the high 16 bits.
   static ScanLabels packed(const std::uint32_t* labels) { return {labels, nullptr}; }
@@ -23,10 +23,13 @@ struct ScanLabels
     return {class_ids, instances};
   }
 
+  /// Raw class id of point i.
   std::uint32_t classId(std::size_t i) const { return instance == nullptr ? semantic[i] & 0xFFFFU : semantic[i]; }
+  /// Instance of point i; 0 for none.
   std::uint32_t instanceId(std::size_t i) const { return instance == nullptr ? semantic[i] >> 16U : instance[i]; }
   /// Class in the high, instance in the low half.
   std::uint64_t key(std::size_t i) const { return std::uint64_t{classId(i)} << 32U | instanceId(i); }
+  /// Whether points i and j bear the same label.
   bool sameSegment(std::size_t i, std::size_t j) const
   {
     return semantic[i] == semantic[j] && (instance == nullptr || instance[i] == instance[j]);
@@ -37,10 +40,10 @@ struct ScanLabels
 /// without an instance (0) are one segment a raw id, as in the official SemanticKITTI evaluator.
 struct Segment
 {
-  std::uint32_t class_id = 0;  ///< raw
-  std::uint32_t instance = 0;
-  ClassIndex class_index = kUnknownClass;
-  std::uint32_t points = 0;  ///< where the truth is a class that is evaluated
+  std::uint32_t class_id = 0;              ///< raw
+  std::uint32_t instance = 0;              ///< of the label; 0 for none
+  ClassIndex class_index = kUnknownClass;  ///< in the class table
+  std::uint32_t points = 0;                ///< where the truth is a class that is evaluated
 };
 
 /// How many points a predicted and a true segment share; at least one.
@@ -48,7 +51,7 @@ struct Overlap
 {
   std::uint32_t predicted = 0;  ///< index into SegmentOverlaps::predicted
   std::uint32_t truth = 0;      ///< index into SegmentOverlaps::truth
-  std::uint32_t points = 0;
+  std::uint32_t points = 0;     ///< in both
 };
 
 /// Dense indices 0, 1, 2 .. for pairs of 64-bit keys in order of first appearance: a hash table with linear probing
@@ -57,7 +60,9 @@ class PairIndex
 {
 public:
   PairIndex() : slots_(1024) {}
+  /// Keeps the memory.
   void clear();
+  /// Number of different keys.
   std::uint32_t size() const { return size_; }
   /// The index of (a, b); size() before the call when the pair is new.
   std::uint32_t indexOf(std::uint64_t a, std::uint64_t b);
@@ -82,21 +87,26 @@ private:
 class SegmentOverlaps
 {
 public:
+  /// `table` says which raw ids are which class.
   explicit SegmentOverlaps(std::shared_ptr<const ClassTable> table) : table_(std::move(table)) {}
 
   /// Replaces what was counted before. Expected linear time; no allocation once the buffers have grown.
   void count(ScanLabels predicted, ScanLabels truth, std::size_t point_count);
 
+  /// Of the scan counted last.
   const std::vector<Segment>& predicted() const { return predicted_; }
+  /// Of the scan counted last.
   const std::vector<Segment>& truth() const { return truth_; }
+  /// Of the scan counted last; pairs without common points are left out.
   const std::vector<Overlap>& overlaps() const { return overlaps_; }
+  /// Of the labels.
   const ClassTable& table() const { return *table_; }
 
 private:
   struct LabelPair
   {
     std::uint64_t predicted = 0, truth = 0;  ///< ScanLabels::key
-    std::uint32_t points = 0;
+    std::uint32_t points = 0;                ///< in both
   };
   void countPairs(ScanLabels predicted, ScanLabels truth, std::size_t point_count);
 

@@ -12,18 +12,21 @@ namespace lidar_panoptic_clustering
 class DisjointSets
 {
 public:
+  /// Makes n sets of one element each. Linear.
   void reset(std::size_t n)
   {
     parent_.resize(n);
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 
+  /// The element that stands for the set of i < n.
   std::uint32_t find(std::uint32_t i)
   {
     while (parent_[i] != i) i = parent_[i] = parent_[parent_[i]];
     return i;
   }
 
+  /// Makes one set of two; the smaller element stands for it.
   void unite(std::uint32_t a, std::uint32_t b)
   {
     a = find(a), b = find(b);

@@ -10,12 +10,13 @@ namespace lidar_panoptic_clustering
 /// A rectangle's sides [m], length >= width.
 struct RectangleSize
 {
-  float length = 0.0F, width = 0.0F;
+  float length = 0.0F, width = 0.0F;  ///< [m], length >= width
 };
 
+/// A place in bird's-eye view [m].
 struct PlanarPoint
 {
-  float x, y;
+  float x, y;  ///< [m], sensor frame
 };
 
 /// An object's outline in bird's-eye view: its farthest points in the eight directions 45 degrees apart.
@@ -25,6 +26,7 @@ struct PlanarPoint
 class Footprint
 {
 public:
+  /// Widens the outline to hold a point [m].
   void add(float x, float y)
   {
     const float along[kAxes] = {x, y, x + y, x - y};
@@ -33,14 +35,19 @@ public:
     if (is_outside) extend(along, {x, y});
   }
 
+  /// Widens the outline to hold another one.
   void add(const Footprint& other)
   {
     for (const PlanarPoint& p : other.point_) add(p.x, p.y);
   }
 
+  /// [m]
   float minX() const { return min_[0]; }
+  /// [m]
   float maxX() const { return max_[0]; }
+  /// [m]
   float minY() const { return min_[1]; }
+  /// [m]
   float maxY() const { return max_[1]; }
 
   /// Whether the gap to another outline can be below `distance` [m]: false is certain, true is a guess from the extents
@@ -65,9 +72,11 @@ public:
   /// Nearest points of two outlines (convex polygons); where they overlap, the two are the same.
   struct Gap
   {
-    PlanarPoint from, to;
+    PlanarPoint from, to;  ///< where the outlines are nearest: on this one, on the other
+    /// [m^2]
     float squaredDistance() const { return (from.x - to.x) * (from.x - to.x) + (from.y - to.y) * (from.y - to.y); }
   };
+  /// The shortest line to another outline; constant time.
   Gap gapTo(const Footprint& other) const;
 
   /// Whether the segment from a to b meets the outline.

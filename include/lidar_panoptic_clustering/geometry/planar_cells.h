@@ -23,8 +23,10 @@ public:
   /// To be called for each point, then close(). `distance` is the diagonal of the layer's cells [m]; layers
   /// are 0 to 255.
   void add(float x, float y, std::int32_t layer, float distance, std::uint32_t thing);
+  /// To be called after the last point; sorts them into cells.
   void close();
 
+  /// Number of cells.
   std::uint32_t size() const { return static_cast<std::uint32_t>(ranges_.size()); }
 
   /// The things of a cell, in no order that means anything.
@@ -33,6 +35,7 @@ public:
   {
     for (std::uint32_t k = ranges_[cell].begin; k < ranges_[cell].end; ++k) visit(points_[k].thing);
   }
+  /// One of the things of a cell.
   std::uint32_t firstThing(std::uint32_t cell) const { return points_[ranges_[cell].begin].thing; }
   /// The cell of the point that was the k-th to be added.
   std::uint32_t cellOf(std::size_t k) const { return cell_of_added_[k]; }

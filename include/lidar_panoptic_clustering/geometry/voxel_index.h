@@ -10,8 +10,9 @@ namespace lidar_panoptic_clustering
 /// A voxel's place on the grid; coordinates of up to 20 bits and sign each.
 struct VoxelKey
 {
-  std::int32_t x, y, z;
+  std::int32_t x, y, z;  ///< cell, floor(coordinate / edge)
 
+  /// The key in 64 bits, for hashing.
   std::uint64_t packed() const
   {
     constexpr std::uint64_t kMask = 0x1FFFFF;
@@ -23,8 +24,9 @@ struct VoxelKey
 /// A cell's place in bird's-eye view, on one of 256 layers; coordinates of up to 27 bits and sign each.
 struct PlanarKey
 {
-  std::int32_t x, y, layer;
+  std::int32_t x, y, layer;  ///< cell of the layer
 
+  /// The key in 64 bits, for hashing.
   std::uint64_t packed() const
   {
     constexpr std::uint64_t kMask = 0xFFFFFFF;
@@ -40,7 +42,7 @@ template <class Key>
 class CellIndex
 {
 public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;  ///< no voxel
 
   /// Empties the index, with room for `capacity` voxels; it grows by itself when there are more.
   void reset(std::size_t capacity = 0)
@@ -73,7 +75,9 @@ public:
     return slot.epoch == epoch_ ? slot.number : kNone;
   }
 
+  /// The key of voxel `number` < size().
   const Key& operator[](std::uint32_t number) const { return keys_[number]; }
+  /// Number of occupied voxels.
   std::size_t size() const { return keys_.size(); }
 
 private:

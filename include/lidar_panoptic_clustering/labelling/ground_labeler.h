@@ -11,6 +11,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// What is ground, and what an object can be.
 struct GroundLabelerConfig
 {
   double max_range_m = 300.0;          ///< returns beyond count as no return

@@ -10,8 +10,9 @@ namespace lidar_panoptic_clustering
 /// z = slope_x x + slope_y y + offset [m], sensor frame.
 struct SlopedPlane
 {
-  float slope_x = 0.0F, slope_y = 0.0F, offset = 0.0F;
+  float slope_x = 0.0F, slope_y = 0.0F, offset = 0.0F;  ///< z = slope_x x + slope_y y + offset [m]
 
+  /// Above the plane, along z [m].
   float heightOf(float x, float y, float z) const { return z - slope_x * x - slope_y * y - offset; }
 };
 
@@ -21,6 +22,7 @@ struct GroundedReturn
   float range;   ///< horizontal [m]
   float height;  ///< above the ground [m]
 
+  /// Whether the pixel holds a return.
   bool isReturn() const { return range > 0.0F; }
 };
 

@@ -27,8 +27,8 @@ ParameterMap surveyParameters(const std::string& algorithm);
 /// What FramePipeline needs: the configuration around the clusterer, and the clusterer.
 struct Algorithm
 {
-  PipelineConfig pipeline;
-  std::unique_ptr<Clusterer> clusterer;
+  PipelineConfig pipeline;               ///< around the clusterer
+  std::unique_ptr<Clusterer> clusterer;  ///< never null
 };
 
 /// An algorithm by name, its defaults overridden by `parameters`. Throws std::invalid_argument on an unknown algorithm

@@ -11,8 +11,8 @@ namespace lidar_panoptic_clustering
 /// What surrounds the clusterer, whatever the algorithm.
 struct PipelineConfig
 {
-  SelectionConfig selection;
-  RefinementConfig refinement;
+  SelectionConfig selection;    ///< before the clusterer
+  RefinementConfig refinement;  ///< behind it
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -25,7 +25,8 @@ struct PipelineConfig
 /// Wall time of the stages of one scan [ms].
 struct StageTimes
 {
-  double select_ms = 0.0, cluster_ms = 0.0, refine_ms = 0.0, paint_ms = 0.0;
+  double select_ms = 0.0, cluster_ms = 0.0, refine_ms = 0.0, paint_ms = 0.0;  ///< in the order of the work
+  /// Of all stages [ms].
   double total() const { return select_ms + cluster_ms + refine_ms + paint_ms; }
 };
 
@@ -63,8 +64,11 @@ public:
 
   /// Of the scan processed last.
   const ThingScan& things() const { return things_; }
+  /// Of the scan processed last.
   const Instances& instances() const { return instances_; }
+  /// Of the scan processed last.
   const StageTimes& times() const { return times_; }
+  /// Of the labels.
   const ClassTable& table() const { return *table_; }
 
 private:

@@ -16,6 +16,7 @@ public:
   /// `elevations_rad`: strictly descending, at least one, as SensorModel has them.
   explicit BeamTable(const std::vector<float>& elevations_rad);
 
+  /// Number of beams.
   std::uint32_t rows() const { return static_cast<std::uint32_t>(lower_sine_.size()); }
 
   /// `sine`: of the elevation, z / range, in [-1, 1]. Points beyond the outermost beams belong to those.

@@ -16,10 +16,11 @@ RawCloud reshapedView(const RawCloud& raw);
 /// How the points of a cloud of several rows and columns lie.
 struct Grid
 {
-  bool reshaped = false;  ///< look at it as reshapedView()
-  Orientation orientation = Orientation::kRowsAreRings;
-  double azimuth_step = 0.0, elevation_step = 0.0;  ///< along the scan lines, see LayoutProbe
-  double staggered_columns = 0.0;
+  bool reshaped = false;                                 ///< look at it as reshapedView()
+  Orientation orientation = Orientation::kRowsAreRings;  ///< after what `reshaped` says
+  double azimuth_step = 0.0, elevation_step = 0.0;       ///< along the scan lines, see LayoutProbe
+  double staggered_columns = 0.0;                        ///< see LayoutProbe
+  /// Whether rows are no scan lines of one azimuth a column.
   bool isStaggered() const;
   /// Whether what is taken for a scan line turns more than it climbs.
   bool goesAlongLines() const { return elevation_step < azimuth_step; }

@@ -28,6 +28,7 @@ std::optional<Orientation> orientationFromName(const std::string& name);
 class LayoutProbe
 {
 public:
+  /// Looks at about a thousand points, and at all where hardly anything returns.
   void look(const RawCloud& cloud, const ScanFields& fields);
 
   /// What the rows are: the ring is constant along a scan line; without it, or where it tells nothing, neighbouring
@@ -49,6 +50,7 @@ public:
 
   /// Means of what changes from one firing to the next along the scan lines, absolute [rad; of the elevation its sine].
   double azimuthStep(Orientation orientation) const;
+  /// See azimuthStep().
   double elevationStep(Orientation orientation) const;
 
   /// The share of neighbouring scan lines of which the one with the lower row in `row_of_line` is the higher one; 1

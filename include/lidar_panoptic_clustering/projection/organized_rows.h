@@ -11,8 +11,8 @@ namespace lidar_panoptic_clustering
 /// How a driver's rows and columns lie in the image.
 struct RowPlacement
 {
-  Orientation orientation = Orientation::kRowsAreRings;
-  std::vector<std::uint32_t> row_of_line;  ///< by the driver's scan line its row; empty: as they come
+  Orientation orientation = Orientation::kRowsAreRings;  ///< what a row of the message is
+  std::vector<std::uint32_t> row_of_line;                ///< by the driver's scan line its row; empty: as they come
 };
 
 /// Reads an organised cloud point by point into its pixels; a pixel without a return has NaN coordinates. Fills all of

@@ -23,11 +23,11 @@ enum class Layout
 /// their firings; in the others column 0 looks backwards and the azimuth falls with the column, see Projection.
 struct OrganizedScan
 {
-  Projection image;                   ///< for clouds that carry no labels, with label 0 until they are given
-  std::vector<ScanPoint> points;      ///< as sent, by index; coordinates as they came, no returns included
-  std::vector<std::uint32_t> labels;  ///< raw class ids by index; kUnreadableLabel where the sender's is no id
-  Layout layout = Layout::kOrganized;
-  bool organized_input = true;  ///< a point a pixel: none can be hidden
+  Projection image;                    ///< for clouds that carry no labels, with label 0 until they are given
+  std::vector<ScanPoint> points;       ///< as sent, by index; coordinates as they came, no returns included
+  std::vector<std::uint32_t> labels;   ///< raw class ids by index; kUnreadableLabel where the sender's is no id
+  Layout layout = Layout::kOrganized;  ///< how the points lay in the message
+  bool organized_input = true;         ///< a point a pixel: none can be hidden
 };
 
 /// Gives the points of a scan labels that came from elsewhere: one a point, by sent index. Linear.
@@ -38,9 +38,8 @@ void labelPoints(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of
 /// without a return get theirs too.
 ///
 /// A return that its pixel does not show gets the label of the nearest returns that are shown, in 3-D: what stands
-/// before it tells nothing of it. Looked for within two rows and two columns of its pixel, and a distance of two columns'
-/// width, at least 0.1 m and at most 0.2 m; where nothing is so near, and where there is no return, it gets `no_class`.
-/// Linear.
-/// Throws std::invalid_argument when there are not as many labels as pixels.
+/// before it tells nothing of it. Looked for within two rows and two columns of its pixel, and a distance of two
+/// columns' width, at least 0.1 m and at most 0.2 m; where nothing is so near, and where there is no return, it gets
+/// `no_class`. Linear. Throws std::invalid_argument when there are not as many labels as pixels.
 void labelPixels(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of_pixel, std::uint32_t no_class);
 }  // namespace lidar_panoptic_clustering

@@ -24,10 +24,11 @@ namespace lidar_panoptic_clustering
 /// without such a field takes its scan lines for the rings, where they are such.
 const std::vector<std::string>& layoutNames();
 
+/// How the points lie in the messages.
 struct OrganizerConfig
 {
-  std::string layout = "auto";
-  std::string orientation = "auto";
+  std::string layout = "auto";       ///< see layoutNames()
+  std::string orientation = "auto";  ///< of organised clouds, see orientationNames()
   std::string sensor = "auto";  ///< of config/sensors or a file, for "beams", rows and columns; "auto": none is named
   int columns = 0;              ///< of a full turn, for clouds that are not organised; 0: the sensor's, else found
   std::string label_field;      ///< class ids, of any number type; empty: the first usual name, see FieldNames
@@ -103,11 +104,15 @@ private:
   Decision takeInOrder(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
 
   Grid gridOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, Decision& decision);
+  [[noreturn]] void refuseStaggered(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out,
+                                    const Grid& grid);
   void orderLines(const RawCloud& view, OrganizedScan& out, Decision& decision);
   void followRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found);
   void place(std::uint32_t rows, Decision& decision, OrganizedScan& out);
-  void checkHidden(const Decision& decision, const OrganizedScan& out) const;
+  void project(std::uint32_t rows, std::uint32_t columns, OrganizedScan& out);
+  double mostHidden(const Decision& decision) const;
+  double hiddenShare(double most, const OrganizedScan& out) const;
   Orientation assumedOrientation(const RawCloud& raw) const;
 
   OrganizerConfig config_;

@@ -10,9 +10,9 @@ namespace lidar_panoptic_clustering
 /// A cloud with fields added: what is new in its message. Width, height and byte order stay.
 struct OriginalCloud
 {
-  std::vector<RawField> fields;
+  std::vector<RawField> fields;                ///< the driver's and the two new ones
   std::uint32_t point_step = 0, row_step = 0;  ///< bytes; rows are not padded
-  std::vector<std::uint8_t> data;
+  std::vector<std::uint8_t> data;              ///< rows without padding
 };
 
 /// The number type of the fields added: float32 is what filters of pcl_ros read (PassThrough, ConditionalRemoval). It

@@ -16,6 +16,7 @@ struct ScanPoint
   float remission;  ///< 0..1
 };
 
+/// The size of the range image.
 struct ProjectionConfig
 {
   int rows = 64;       ///< scan lines of the sensor
@@ -36,16 +37,16 @@ struct ProjectionConfig
 /// the middle, +y left of it.
 struct Projection
 {
-  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  static constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();  ///< no point, or no pixel
 
-  LabelledCloud cloud;  ///< NaN coordinates where no return fell
-  std::vector<std::uint32_t> pixel_of_point;
+  LabelledCloud cloud;                        ///< NaN coordinates where no return fell
+  std::vector<std::uint32_t> pixel_of_point;  ///< kNone for what is no return
   std::vector<std::uint32_t> owner_of_pixel;  ///< the point the pixel shows, kNone where it is empty
 
   /// All points of a pixel, in file order: points[begin[pixel]] .. points[begin[pixel + 1] - 1]. Every point of the
   /// scan stands in exactly one pixel's list.
   std::vector<std::uint32_t> begin;
-  std::vector<std::uint32_t> points;
+  std::vector<std::uint32_t> points;  ///< see begin
 
   std::uint32_t rings = 0;  ///< found in the scan, however many rows there are
 };
@@ -54,6 +55,7 @@ struct Projection
 struct PointDirection
 {
   float azimuth;  ///< [rad], in [-pi, pi]
+  /// 0 is the highest beam.
   std::uint32_t row;
 };
 
@@ -81,6 +83,7 @@ public:
 
   /// Returns of the scan projected last that lie behind others of their pixel, and all of its returns.
   std::size_t hiddenReturns() const { return hidden_.size() - without_return_; }
+  /// See hiddenReturns().
   std::size_t returns() const { return returns_; }
   /// Points of that scan that own no pixel, those without a return too.
   const std::vector<std::uint32_t>& hidden() const { return hidden_; }

@@ -25,11 +25,12 @@ enum class NumberType : std::uint8_t
 /// One field of a point as the sender describes it; nothing of it is to be believed before checkLayout().
 struct RawField
 {
-  std::string name;
+  std::string name;           ///< as in the message
   std::uint32_t offset = 0;   ///< bytes from the point's start; may be odd
   std::uint8_t datatype = 0;  ///< a NumberType, or anything
   std::uint32_t count = 1;    ///< elements; the first one is read
 
+  /// To be asked only where the datatype is known to be one.
   NumberType type() const { return static_cast<NumberType>(datatype); }
 };
 
@@ -38,13 +39,14 @@ struct RawField
 /// Row r, column c starts at data + r * row_step + c * point_step; rows may be padded, points may be packed.
 struct RawCloud
 {
-  std::uint32_t width = 0, height = 0;
+  std::uint32_t width = 0, height = 0;         ///< in points
   std::uint32_t point_step = 0, row_step = 0;  ///< bytes
-  bool is_bigendian = false;
-  std::vector<RawField> fields;
-  const std::uint8_t* data = nullptr;
-  std::size_t data_size = 0;  ///< bytes
+  bool is_bigendian = false;                   ///< such clouds are refused
+  std::vector<RawField> fields;                ///< in any order
+  const std::uint8_t* data = nullptr;          ///< height rows of row_step bytes; not owned
+  std::size_t data_size = 0;                   ///< bytes
 
+  /// The first byte of a point; has to lie inside.
   const std::uint8_t* point(std::size_t row, std::size_t column) const
   {
     return data + row * row_step + column * point_step;
@@ -84,9 +86,9 @@ void checkLayout(const RawCloud& cloud, const std::vector<std::string>& required
 /// `count` points, `step` bytes from one to the next: a piece of a row, or of a column.
 struct PointRun
 {
-  const std::uint8_t* first = nullptr;
-  std::size_t step = 0;
-  std::size_t count = 0;
+  const std::uint8_t* first = nullptr;  ///< the first point of the run
+  std::size_t step = 0;                 ///< bytes from one point to the next
+  std::size_t count = 0;                ///< number of points
 };
 
 /// Reads a field of any number type as float, into a member of consecutive points `out_step` bytes apart.
@@ -99,9 +101,9 @@ void readIds(const PointRun& run, const RawField& field, std::uint32_t* out, std
 /// The names under which a sender may have the fields of a LabelledPoint.
 struct LabelledFields
 {
-  std::string x = "x", y = "y", z = "z";
-  std::string intensity = "intensity";  ///< may be absent, then 0
-  std::string label = "label";
+  std::string x = "x", y = "y", z = "z";  ///< names of the coordinates' fields
+  std::string intensity = "intensity";    ///< may be absent, then 0
+  std::string label = "label";            ///< name of the field with the class ids
 };
 
 enum class RowOrder

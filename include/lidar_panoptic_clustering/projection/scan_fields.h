@@ -18,6 +18,7 @@ struct FieldNames
 /// The fields of one message that make a scan; pointers into RawCloud::fields.
 struct ScanFields
 {
+  /// The coordinates, float32 or float64; never null once found.
   const RawField *x = nullptr, *y = nullptr, *z = nullptr;
   const RawField* label = nullptr;      ///< null where labels come from elsewhere
   const RawField* intensity = nullptr;  ///< null where it is not sent

@@ -9,7 +9,7 @@ namespace lidar_panoptic_clustering
 /// How a sensor whose points come ring after ring goes along each of them.
 struct Sweep
 {
-  bool clockwise = false;
+  bool clockwise = false;  ///< seen from above
   float start_rad = 0.0F;  ///< azimuth at which rings begin; of a sector, any in the part that it does not see
 };
 
@@ -23,6 +23,7 @@ struct Sweep
 class RingCounter
 {
 public:
+  /// Begins with ring 0.
   explicit RingCounter(const Sweep& sweep = {})
       : sense_(sweep.clockwise ? -1.0F : 1.0F), start_(sense_ * sweep.start_rad)
   {

@@ -14,16 +14,17 @@ namespace lidar_panoptic_clustering
 /// the defaults of the rest suit a lidar on a car's roof.
 struct SensorModel
 {
-  std::string name;
+  std::string name;                                 ///< for messages
   std::vector<float> elevations_rad;                ///< one a ring, strictly descending: row 0 is the highest beam
   std::uint32_t columns = 0;                        ///< firings in the horizontal field of view
   double horizontal_fov_rad = 6.28318530717958648;  ///< centred on the x axis (ahead); less than a turn for a sector
-  float min_range_m = 0.5F;
-  float max_range_m = 120.0F;
-  float range_noise_m = 0.02F;  ///< standard deviation along the beam
-  float dropout = 0.02F;        ///< probability that a beam at short range and steep incidence does not return
-  float mount_height_m = 1.73F;
+  float min_range_m = 0.5F;                         ///< nearest return
+  float max_range_m = 120.0F;                       ///< farthest return
+  float range_noise_m = 0.02F;                      ///< standard deviation along the beam
+  float dropout = 0.02F;         ///< probability that a beam at short range and steep incidence does not return
+  float mount_height_m = 1.73F;  ///< of the sensor above the ground
 
+  /// Number of beams.
   std::uint32_t rows() const { return static_cast<std::uint32_t>(elevations_rad.size()); }
   /// Whether the last column is the first one's neighbour.
   bool fullTurn() const;
@@ -35,6 +36,7 @@ struct SensorModel
   /// Throws std::runtime_error when there is no such file, std::invalid_argument when its content is wrong;
   /// both name the file, the key, what was expected and what was found.
   static SensorModel load(const std::string& name_or_path);
+  /// The same from YAML text; `source` stands in its place in messages.
   static SensorModel parse(const std::string& yaml, const std::string& source);
   /// The sensors that ship with the package.
   static std::vector<std::string> shippedNames();

@@ -13,12 +13,12 @@ namespace lidar_panoptic_clustering
 /// at data + r * step.
 struct RawImage
 {
-  std::uint32_t width = 0, height = 0;
-  std::uint32_t step = 0;  ///< bytes
-  bool is_bigendian = false;
-  std::string encoding;
-  const std::uint8_t* data = nullptr;
-  std::size_t data_size = 0;  ///< bytes
+  std::uint32_t width = 0, height = 0;  ///< of the range image
+  std::uint32_t step = 0;               ///< bytes
+  bool is_bigendian = false;            ///< of values of more than one byte
+  std::string encoding;                 ///< "mono8", "16UC1" ...
+  const std::uint8_t* data = nullptr;   ///< height rows of step bytes; not owned
+  std::size_t data_size = 0;            ///< bytes
 };
 
 /// Reads a picture of class ids, as networks that work on range images produce them, row-major into `label_of_pixel`.

@@ -19,7 +19,7 @@ namespace lidar_panoptic_clustering
 class BoxSplitter
 {
 public:
-  static constexpr int kCoarsest = 9;
+  static constexpr int kCoarsest = 9;  ///< tenths of the reach to begin with
 
   /// `things`: the object's `count` points, indices into the scan. `tenths`: where to begin, at most kCoarsest; becomes
   /// the distance found, where the parts hang together, so that each of them need only be looked at below it. Returns

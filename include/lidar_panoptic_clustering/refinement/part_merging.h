@@ -13,16 +13,18 @@ namespace lidar_panoptic_clustering
 /// An object as refinement sees it.
 struct RefinedObject
 {
-  ClassIndex class_index = kUnknownClass;
-  std::uint32_t point_count = 0;
+  ClassIndex class_index = kUnknownClass;          ///< of most of its points
+  std::uint32_t point_count = 0;                   ///< its thing points
   float sum_x = 0.0F, sum_y = 0.0F, sum_z = 0.0F;  ///< of its points [m]
-  Footprint footprint;
+  Footprint footprint;                             ///< in bird's-eye view
 
+  /// Adds another object's points, but not its outline.
   void addPoints(const RefinedObject& other)
   {
     point_count += other.point_count;
     sum_x += other.sum_x, sum_y += other.sum_y, sum_z += other.sum_z;
   }
+  /// Adds another object's points and outline.
   void add(const RefinedObject& other)
   {
     addPoints(other);

@@ -12,6 +12,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// Which steps are taken, and their limits.
 struct RefinementConfig
 {
   double bridge_distance_m = 0.3;  ///< objects of one group of classes that are closer are one; 0: never

@@ -22,7 +22,7 @@ struct ScanLabellerConfig
   std::string class_table;          ///< of the labels that go out; empty: the same
   double max_unknown_labels = 0.0;  ///< share of a scan's labelled returns whose ids the table may lack
   bool check_label_shapes = true;   ///< refuse ids that look like another class's, see LabelNumbering
-  GroundLabelerConfig ground;
+  GroundLabelerConfig ground;       ///< where labels is "none"
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -54,12 +54,20 @@ public:
 
   /// The labels that came with the cloud.
   void takeOwn(OrganizedScan& scan);
+  /// A picture of the range image; a pixel a pixel.
   void takeImage(const RawImage& image, OrganizedScan& scan);
   /// `cloud` is what `scan` was made of.
   void takeCloud(const RawCloud& labels, const std::string& label_field, const RawCloud& cloud, OrganizedScan& scan);
   /// Ground, structure and objects by geometry. The scan's points are labelled `all` only where somebody needs them;
   /// the pixels always are.
   void takeGeometry(OrganizedScan& scan, bool all);
+
+  /// Of the last scan labelled by geometry [m]; nothing where no ground was found, and with labels from elsewhere.
+  std::optional<float> sensorHeight() const
+  {
+    if (!ground_.foundGround()) return std::nullopt;
+    return ground_.groundPlane().heightOf(0.0F, 0.0F, 0.0F);
+  }
 
   /// Of the labels that go out.
   const std::shared_ptr<const ClassTable>& classTable() const { return class_table_; }

@@ -13,12 +13,13 @@
 
 namespace lidar_panoptic_clustering
 {
+/// What ScanToObjects does with a cloud.
 struct ScanToObjectsConfig
 {
-  OrganizerConfig organizer;    ///< how the points lie in the cloud; `labels` follows from the labeller's
-  ScanLabellerConfig labeller;  ///< where the classes come from
-  std::string algorithm = "birds_eye";
-  ParameterMap parameters{};  ///< of the algorithm and what surrounds it, see algorithmParameters()
+  OrganizerConfig organizer;            ///< how the points lie in the cloud; `labels` follows from the labeller's
+  ScanLabellerConfig labeller;          ///< where the classes come from
+  std::string algorithm = "birds_eye";  ///< see algorithmNames()
+  ParameterMap parameters{};            ///< of the algorithm and what surrounds it, see algorithmParameters()
 };
 
 /// From a cloud as a driver sends it to objects, in one call: what OrganizerNodelet and a cluster nodelet do together.
@@ -44,16 +45,20 @@ public:
   /// Of the scan processed last, a raw class id of classTable() and an instance (1..n, 0 for none) a point, in the
   /// order sent, row-major; points that the range image hides included.
   const std::vector<std::uint32_t>& labels() const { return label_; }
+  /// Parallel to labels().
   const std::vector<std::uint32_t>& instanceIds() const { return instance_; }
 
   /// The objects of the scan's image and a box each, by id - 1. Instances beyond their number in instanceIds() are
   /// objects that only hidden points show.
   const Instances& instances() const { return pipeline_.instances(); }
+  /// Parallel to instances().objects; sensor frame.
   const std::vector<InstanceBox>& boxes() const { return *boxes_; }
 
   /// The organised scan and the painted image, with `kNone`-owned pixels as NaN; milliseconds a stage.
   const OrganizedScan& scan() const { return scan_; }
+  /// Painted.
   const PanopticCloud& image() const { return image_; }
+  /// Of the scan processed last, from select to paint.
   const StageTimes& times() const { return pipeline_.times(); }
 
   /// Of the labels that go out.

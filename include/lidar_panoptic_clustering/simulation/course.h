@@ -14,13 +14,17 @@ namespace lidar_panoptic_clustering::simulation
 class Course
 {
 public:
+  /// `seed` shifts the sine along the street.
   explicit Course(std::uint64_t seed) : phase_(static_cast<double>(seed % 1000) * 1e-3 * kTwoPi) {}
 
+  /// World y of the centre line [m].
   double centerY(double station) const { return kAmplitudeM * std::sin(kTwoPi * station / kPeriodM + phase_); }
+  /// Dy / dx of the centre line.
   double slope(double station) const
   {
     return kAmplitudeM * kTwoPi / kPeriodM * std::cos(kTwoPi * station / kPeriodM + phase_);
   }
+  /// Of the driving direction [rad].
   double heading(double station) const { return std::atan(slope(station)); }
 
   /// `turn` [rad] is added to the street's heading.

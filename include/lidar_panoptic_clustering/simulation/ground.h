@@ -14,11 +14,12 @@ namespace lidar_panoptic_clustering::simulation
 constexpr double kMarkingHalfWidth = 0.08, kRoadEdge = 5.0, kCurb = 7.2, kSidewalkEdge = 10.6;
 constexpr double kCurbHeight = 0.12;  ///< what lies beyond the curb stands so much above the road, which is z = 0
 
+/// Where a beam meets the ground.
 struct GroundHit
 {
-  float range_m = 0.0F;
+  float range_m = 0.0F;    ///< from the sensor
   float incidence = 0.0F;  ///< cosine between the beam and the surface's normal
-  Surface surface;
+  Surface surface;         ///< what it meets
 };
 
 /// The ground as one pose of the sensor sees it: road, parking strip, curb, sidewalk, and gardens or yards beyond.

@@ -12,6 +12,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// The drive and the street.
 struct SimulatorConfig
 {
   int seed = 1;                     ///< another street with another traffic
@@ -56,7 +57,9 @@ public:
   /// The sensor in the world; throws as scan does.
   simulation::Pose pose(std::uint64_t frame) const;
 
+  /// Of the sensor.
   const SensorModel& model() const { return model_; }
+  /// As given.
   const SimulatorConfig& config() const { return config_; }
 
 private:

@@ -12,14 +12,17 @@ namespace lidar_panoptic_clustering::simulation
 class ObjectBuilder
 {
 public:
+  /// Adds to `solids`, which has to outlive it.
   ObjectBuilder(std::vector<Solid>& solids, const Pose& pose, std::uint32_t label, std::uint32_t instance = 0);
 
   /// The label, reflectivity, transmission and depth of all that is added from here on.
   ObjectBuilder& label(std::uint32_t label);
+  /// See Surface.
   ObjectBuilder& surface(float reflectivity, float transmission = 0.0F, float depth_m = 0.0F);
 
   /// `size`: the full extents along x, y, z.
   ObjectBuilder& box(const Eigen::Vector3f& center, const Eigen::Vector3f& size);
+  /// `size`: the full extents along x, y, z.
   ObjectBuilder& ellipsoid(const Eigen::Vector3f& center, const Eigen::Vector3f& size);
   /// A cylinder from one point to another.
   ObjectBuilder& bar(const Eigen::Vector3f& from, const Eigen::Vector3f& to, float radius);
@@ -38,7 +41,7 @@ private:
 /// Length and width of a vehicle [m].
 struct Footprint
 {
-  double length, width;
+  double length, width;  ///< [m]
 };
 
 /// Each adds one object of the given raw label and instance to `solids`; its look (size, colour, build) follows

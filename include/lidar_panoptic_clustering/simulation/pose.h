@@ -7,6 +7,6 @@ namespace lidar_panoptic_clustering::simulation
 /// Where something upright stands in the world: x east, y north, z up [m], yaw from x to y [rad].
 struct Pose
 {
-  double x = 0.0, y = 0.0, z = 0.0, yaw = 0.0;
+  double x = 0.0, y = 0.0, z = 0.0, yaw = 0.0;  ///< [m], yaw [rad]
 };
 }  // namespace lidar_panoptic_clustering::simulation

@@ -40,15 +40,20 @@ constexpr float gaussian(std::uint64_t bits)
 }
 
 /// A stream of random numbers, the same for the same key with every compiler and standard library (the distributions
-/// of <random> are not). Draw each number in a statement of its own: the order of arguments is not specified.
+/// of the header random are not). Draw each number in a statement of its own: the order of arguments is not specified.
 class Random
 {
 public:
+  /// The same key gives the same numbers.
   explicit Random(std::uint64_t key) : state_(key) {}
 
+  /// 64 random bits.
   std::uint64_t next() { return mix(state_ += 0x9E3779B97F4A7C15ULL); }
+  /// In [low, high).
   double uniform(double low, double high) { return low + (high - low) * static_cast<double>(next() >> 11) * 0x1p-53; }
+  /// In [low, high).
   float uniform(float low, float high) { return static_cast<float>(uniform(double{low}, double{high})); }
+  /// True with the given probability.
   bool chance(double probability) { return uniform(0.0, 1.0) < probability; }
   /// 0..n-1; n > 0.
   int below(int n) { return static_cast<int>((next() >> 33) % static_cast<std::uint64_t>(n)); }

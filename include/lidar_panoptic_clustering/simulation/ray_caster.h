@@ -14,22 +14,22 @@ namespace lidar_panoptic_clustering::simulation
 /// A solid as the sensor sees it, with the part of the range image it can fall on.
 struct Target
 {
-  Shape shape = Shape::kBox;
-  Eigen::Matrix3f to_unit;  ///< turns directions of the sensor frame into the unit shape's
-  Eigen::Vector3f origin;   ///< the sensor in the unit shape's frame
-  float transmission = 0.0F, depth_m = 0.0F;
-  std::uint32_t solid = 0;  ///< its index in the list of solids
+  Shape shape = Shape::kBox;                  ///< of the solid
+  Eigen::Matrix3f to_unit;                    ///< turns directions of the sensor frame into the unit shape's
+  Eigen::Vector3f origin;                     ///< the sensor in the unit shape's frame
+  float transmission = 0.0F, depth_m = 0.0F;  ///< see Surface
+  std::uint32_t solid = 0;                    ///< its index in the list of solids
 
-  float near_m = 0.0F;  ///< no point of it is nearer
-  std::int32_t column_begin = 0, column_count = 0;
-  std::uint32_t row_begin = 0, row_end = 0;
+  float near_m = 0.0F;                              ///< no point of it is nearer
+  std::int32_t column_begin = 0, column_count = 0;  ///< columns it can fall on; they go round behind the last
+  std::uint32_t row_begin = 0, row_end = 0;         ///< rows it can fall on
 };
 
 /// Where a beam ends.
 struct BeamEnd
 {
-  float range_m = std::numeric_limits<float>::infinity();
-  std::int32_t target = -1;  ///< index into RayCaster::targets, -1 for nothing
+  float range_m = std::numeric_limits<float>::infinity();  ///< infinity where it meets nothing
+  std::int32_t target = -1;                                ///< index into RayCaster::targets, -1 for nothing
 };
 
 /// Finds the nearest solid on every beam of a lidar.

@@ -14,7 +14,7 @@ namespace lidar_panoptic_clustering::simulation
 /// What a beam finds where it ends.
 struct Surface
 {
-  std::uint32_t label = 0;
+  std::uint32_t label = 0;     ///< raw SemanticKITTI id
   std::uint32_t instance = 0;  ///< 0 for stuff
   float reflectivity = 0.3F;   ///< share of the light sent back, 0..1
   float transmission = 0.0F;   ///< probability that a beam passes: glass, foliage, wire fences
@@ -31,16 +31,16 @@ enum class Shape : std::uint8_t
 /// A unit shape, scaled and rotated into the world.
 struct Solid
 {
-  Shape shape = Shape::kBox;
+  Shape shape = Shape::kBox;                                ///< scaled and turned by half_axes
   Eigen::Vector3d center = Eigen::Vector3d::Zero();         ///< [m]
   Eigen::Matrix3f half_axes = Eigen::Matrix3f::Identity();  ///< columns: orthogonal, as long as half the extent [m]
-  Surface surface;
+  Surface surface;                                          ///< all around
 };
 
 /// The part of a line origin + t * direction that lies inside a shape: enter <= t <= exit.
 struct Chord
 {
-  float enter = 0.0F, exit = 0.0F;
+  float enter = 0.0F, exit = 0.0F;  ///< parameter t of the line
 };
 
 namespace detail

@@ -13,8 +13,8 @@ namespace lidar_panoptic_clustering::simulation
 /// How much stands beside the street, as shares of the places there are.
 struct StreetConfig
 {
-  std::uint64_t seed = 0;
-  double parking_density = 0.65;
+  std::uint64_t seed = 0;           ///< another street
+  double parking_density = 0.65;    ///< of the parking strip
   double pedestrian_density = 0.5;  ///< standing ones; those that walk belong to the traffic
 };
 
@@ -32,10 +32,12 @@ constexpr std::uint32_t kLastStaticInstance = 49152;
 class Street
 {
 public:
+  /// Both configs have to have the same seed, or traffic and street do not belong together.
   Street(const StreetConfig& street, const TrafficConfig& traffic);
 
   /// Exchanges `solids` for those within `reach_m` of `station` (and some beyond) at a time.
   void collect(double time_s, double station, double reach_m, std::vector<Solid>& solids);
+  /// The centre line.
   const Course& course() const { return course_; }
 
 private:

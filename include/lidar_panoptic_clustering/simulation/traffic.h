@@ -9,12 +9,13 @@
 
 namespace lidar_panoptic_clustering::simulation
 {
+/// How much moves, and how fast.
 struct TrafficConfig
 {
-  std::uint64_t seed = 0;
-  double ego_speed_mps = 8.0;  ///< the ego vehicle's lane moves at this speed, and it has a place of its own in it
-  double density = 0.6;        ///< share of the places on the lanes that are taken
-  double pedestrian_density = 0.5;
+  std::uint64_t seed = 0;           ///< other traffic
+  double ego_speed_mps = 8.0;       ///< the ego vehicle's lane moves at this speed, and it has a place of its own in it
+  double density = 0.6;             ///< share of the places on the lanes that are taken
+  double pedestrian_density = 0.5;  ///< of those that walk on the sidewalks
 };
 
 /// The ego vehicle's lane, left of the centre line [m].
@@ -27,6 +28,7 @@ constexpr double kEgoOffset = -1.65;
 class Traffic
 {
 public:
+  /// Along `course`.
   Traffic(const TrafficConfig& config, const Course& course) : config_(config), course_(course) {}
 
   /// Adds what is within `reach_m` of `station` at a time.
