@@ -42,7 +42,10 @@ Ids idsWith(const visualization_msgs::MarkerArray& array, int action)
 {
   Ids ids;
   for (const Marker& marker : array.markers)
-    if (marker.action == action) EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
+  {
+    if (marker.action != action) continue;
+    EXPECT_TRUE(ids.emplace(marker.ns, marker.id).second) << marker.ns << marker.id;
+  }
   return ids;
 }
 

@@ -96,7 +96,10 @@ TEST_P(EachNodelet, WarnsOfAMisspeltParameter)
   ros::param::set(name + "/rubbish_zzz", 1);
   tryLoad(name, GetParam());  // the player has no data set
   log.waitFor("unknown parameter " + name + "/rubbish_zzz: nobody uses it");
-  if (loader_.listLoadedNodelets().size() > 0) EXPECT_TRUE(loader_.unload(name));
+  if (!loader_.listLoadedNodelets().empty())
+  {
+    EXPECT_TRUE(loader_.unload(name));
+  }
 }
 
 TEST_F(Graph, DiagnosticsShowTheMisspeltParameterToo)
