@@ -3,5 +3,6 @@
 include(CMakeFindDependencyMacro)
 find_dependency(PCL COMPONENTS common search segmentation)
 if(NOT TARGET lidar_panoptic_clustering::lidar_panoptic_clustering AND NOT TARGET lidar_panoptic_clustering)
-  include(${CMAKE_CURRENT_LIST_DIR}/lidar_panoptic_clusteringTargets.cmake)
+  # beside the configuration that includes this; in a devel space this file itself stays in the source
+  include(${lidar_panoptic_clustering_DIR}/lidar_panoptic_clusteringTargets.cmake)
 endif()

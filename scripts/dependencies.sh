@@ -2,11 +2,12 @@
 # Sourced: installs with apt what is missing.
 source "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 
-# Prints the packages that building, testing and running need, one a line.
+# Prints the packages that building, testing and running need, one a line. $1: without_ros for those of the core alone
 required_packages() {
   printf '%s\n' g++ cmake make pkg-config \
     libbenchmark-dev libboost-program-options-dev libcairo2-dev libeigen3-dev libgtest-dev libpcl-dev libyaml-cpp-dev \
     nlohmann-json3-dev fonts-dejavu-core
+  [ "${1:-}" != without_ros ] || return 0
   local name
   if [ ! -e "$ros_setup" ]; then
     printf '%s\n' catkin libnodeletlib-dev libpcl-ros-dev libdynamic-reconfigure-config-init-mutex-dev \
@@ -61,8 +62,9 @@ install_packages() {
   rm -f "$log"
 }
 
+# $1: as of required_packages
 install_dependencies() {
   local required
-  mapfile -t required < <(required_packages)
+  mapfile -t required < <(required_packages "$@")
   install_packages "${required[@]}"
 }

@@ -29,10 +29,16 @@ getent hosts localhost > /dev/null || local_host=127.0.0.1
 
 # Makes what a shell needs to use ROS, without its habit of reading unset variables. $1: a setup.bash
 load_ros() {
+  local file errors
+  file=$(mktemp)
+  exec {errors}<> "$file"
+  rm "$file"
   set +u
   # shellcheck disable=SC1090
-  source "$1"
+  source "$1" 2>&"$errors"
   set -u
+  cat "/proc/$$/fd/$errors" >&2  # only now: what its programs say when Ctrl-C ends them is no error of ours
+  exec {errors}>&-
   # a container's host name often resolves to nothing
   [ -n "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || export ROS_HOSTNAME=$local_host
   [ $local_host = localhost ] || export PYTHONPATH=$root/scripts/without_localhost${PYTHONPATH:+:$PYTHONPATH}

@@ -39,7 +39,8 @@ def build(name, *arguments):
 
 
 def range_to_scene(azimuth, elevation):
-    """The distance from a lidar 1.73 m above flat ground to a box of 4 x 2 x 1.5 m at (10, 3) m, or to the ground."""
+    """The distance from a lidar 1.73 m above a street to a box of 4 x 2 x 1.5 m at (10, 3) m, or to what is behind it:
+    flat ground, and walls 25 m to the left and the right."""
     direction = (math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation))
     near, far = 0.0, math.inf
     for d, low, high in zip(direction, (8.0, 2.0, -1.73), (12.0, 4.0, -0.23)):
@@ -48,7 +49,8 @@ def range_to_scene(azimuth, elevation):
     if near < far:
         return near
     ground = -1.73 / direction[2] if direction[2] < 0.0 else math.inf
-    return ground if ground < 80.0 else None
+    behind = min(ground, 25.0 / abs(direction[1]) if direction[1] else math.inf)
+    return behind if behind < 80.0 else None
 
 
 def write_scan(path):
@@ -99,7 +101,8 @@ class CatkinPackage(unittest.TestCase):
              'example.launch'], pass_fds=[write], stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)
         try:
             os.close(write)
-            os.environ['ROS_MASTER_URI'] = os.fdopen(read).readline().strip()
+            with os.fdopen(read) as address:
+                os.environ["ROS_MASTER_URI"] = address.readline().strip()
             import rospy
             from sensor_msgs.msg import PointCloud2
             from sensor_msgs import point_cloud2
@@ -122,4 +125,5 @@ if __name__ == '__main__':
     parser.add_argument('--prefix', required=True)
     parser.add_argument('--work', required=True)
     _, left = parser.parse_known_args(namespace=options)
+    options.prefix, options.work = os.path.abspath(options.prefix), os.path.abspath(options.work)
     unittest.main(argv=[sys.argv[0]] + left)

@@ -89,14 +89,21 @@ class Scripts(unittest.TestCase):
     def test_who_may_not_install_is_told_what_to_ask_for(self):
         tree = self.copy_scripts('tree')
         done = self.bash(tree, 'missing_packages() { printf "%s\\n" g++ libpcl-dev; }\nid() { echo 1000; }\n'
-                         'can_use_sudo() { false; }\napt-get() { echo "apt-get was called"; }\ninstall_dependencies')
+                         'can_use_sudo() { false; }\napt-get() { echo "apt-get was called"; }\ninstall_dependencies with_ros')
         self.assertEqual((done.returncode, done.stdout), (1, ''))
         self.assertEqual(done.stderr, 'check: error: 2 packages are missing, and this user can install none. Ask for:\n'
                          '  apt-get update && apt-get install -y --no-install-recommends g++ libpcl-dev\n')
 
+    def test_without_ros_no_package_of_ros_is_asked_for(self):
+        tree = self.copy_scripts('tree')
+        core = self.bash(tree, 'required_packages without_ros').stdout.split()
+        self.assertIn('libpcl-dev', core)
+        self.assertFalse([name for name in core if 'ros' in name or 'catkin' in name or 'nodelet' in name])
+        self.assertIn('catkin', self.bash(tree, 'required_packages with_ros').stdout.split())
+
     def test_nothing_is_asked_for_where_all_is_there(self):
         tree = self.copy_scripts('tree')
-        done = self.bash(tree, 'missing_packages() { :; }\nsudo() { echo "sudo was called"; }\ninstall_dependencies')
+        done = self.bash(tree, 'missing_packages() { :; }\nsudo() { echo "sudo was called"; }\ninstall_dependencies with_ros')
         self.assertEqual((done.returncode, done.stdout, done.stderr), (0, '', ''))
 
     def test_a_system_that_does_not_know_localhost_is_left_as_it_is(self):

@@ -16,6 +16,7 @@ constexpr std::uint32_t kBeyond = 0x10000;  // no table has ids from here on; ne
 constexpr std::uint16_t kNoSlot = 0xFFFF;
 constexpr std::uint32_t kMinusOne = 0xFFFFFFFFU;
 constexpr int kCleanScans = 10;
+constexpr std::uint64_t kFirstScans = 20, kScansALook = 4;  // shapes hardly change later
 
 /// "24 (30512 points), 28 (9033 points)", the most frequent ones.
 std::string describeCounts(const std::multimap<std::size_t, std::uint32_t, std::greater<>>& ids_by_count)
@@ -87,7 +88,8 @@ void LabelNumbering::check(const LabelledCloud& image, const std::vector<std::ui
 {
   ++scan_;
   count(image, hidden);
-  if (config_.check_shapes && image.height > 1)
+  const bool looks = scan_ <= kFirstScans || scan_ % kScansALook == 0;
+  if (config_.check_shapes && looks && image.height > 1)
   {
     lookAtShapes(image);
     lookAlongLines(image);
@@ -185,6 +187,12 @@ std::string LabelNumbering::seenIds() const
   return text + (ids.size() > kNamed ? ", ..." : "");
 }
 
+std::string LabelNumbering::expectedTable() const
+{
+  return "expected class ids of the table '" + own_.table->name() + "' (parameter label_table" +
+         (config_.chosen ? ")" : ", which is not set)");
+}
+
 void LabelNumbering::requireIds()
 {
   std::size_t labelled = 0, lacking = 0;
@@ -196,15 +204,13 @@ void LabelNumbering::requireIds()
     if (id.lacking) lacking += id.returns;
     if (id.lacking || own_.table->find(id.id) != kUnknownClass) labelled += id.returns;
   }
-  const std::string expected = "expected class ids of the table '" + own_.table->name() + "' (parameter label_table" +
-                               (config_.chosen ? ")" : ", which is not set)");
   if (static_cast<double>(lacking) > config_.max_unknown_labels * static_cast<double>(labelled))
   {
     lacking_ = true, clean_scans_ = 0;
     std::multimap<std::size_t, std::uint32_t, std::greater<>> by_count;
     for (const Seen& id : seen_)
       if (id.scan == scan_ && id.lacking) by_count.emplace(id.returns, id.id);
-    throw std::invalid_argument(expected + ", found that " + std::to_string(lacking) + " of " +
+    throw std::invalid_argument(expectedTable() + ", found that " + std::to_string(lacking) + " of " +
                                 std::to_string(labelled) +
                                 " labelled returns have others: " + describeCounts(by_count) + fittingTables());
   }
@@ -213,7 +219,8 @@ void LabelNumbering::requireIds()
   std::string others;
   for (const Seen& id : seen_)
     if (id.lacking && others.size() < 40) others += (others.empty() ? "" : ", ") + idText(id.id);
-  throw std::invalid_argument(expected + ", found that scans before this one had others: " + others + fittingTables());
+  throw std::invalid_argument(expectedTable() + ", found that scans before this one had others: " + others +
+                              fittingTables());
 }
 
 void LabelNumbering::requireShapes() const
@@ -230,10 +237,9 @@ void LabelNumbering::requireShapes() const
             ? "stands upright in " + percent(id.steep / id.pairs) + " of the places"
             : "has " + percent(id.long_run_points[longest] / id.run_points) + " of its points in pieces longer than " +
                   std::to_string(std::lround(kRunLengths[longest])) + " m";
-    throw std::invalid_argument("expected class ids of the table '" + own_.table->name() + "' (parameter label_table" +
-                                (config_.chosen ? ")" : ", which is not set)") + ", found that id " + idText(id.id) +
-                                ", '" + (*own_.table)[own_.table->find(id.id)].name + "' there, " + looks +
-                                fittingTables() + ", or check_label_shapes to false where it is right");
+    throw std::invalid_argument(expectedTable() + ", found that id " + idText(id.id) + ", '" +
+                                (*own_.table)[own_.table->find(id.id)].name + "' there, " + looks + fittingTables() +
+                                ", or check_label_shapes to false where it is right");
   }
 }
 

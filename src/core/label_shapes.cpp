@@ -14,6 +14,12 @@ constexpr double kFlatShare = 0.85, kUprightShare = 0.5, kLongShare = 0.5, kGrou
 constexpr std::uint32_t kColumnStep = 4, kRowStep = 4;
 constexpr float kFlatSlope = 0.3F, kSteepSlope = 1.0F;
 constexpr float kRunGap = 0.5F;  // [m]
+
+float squaredDistance(const LabelledPoint& a, const LabelledPoint& b)
+{
+  const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
+  return dx * dx + dy * dy + dz * dz;
+}
 }  // namespace
 
 /// Neighbouring returns of one id above one another: on the ground one is farther away, on what stands it is higher.
@@ -27,11 +33,12 @@ void LabelNumbering::lookAtShapes(const LabelledCloud& image)
       if (p.label != q.label || !isReturn(p) || !isReturn(q)) continue;
       const float dot = p.x * q.x + p.y * q.y, cross = p.x * q.y - p.y * q.x;
       if (!(std::abs(cross) < 0.02F * dot)) continue;  // not above one another
-      const float rise = std::abs(p.z - q.z), run = std::hypot(p.x - q.x, p.y - q.y);
+      const float dx = p.x - q.x, dy = p.y - q.y, dz = p.z - q.z;
+      const float rise = dz * dz, run = dx * dx + dy * dy;
       Seen& entry = seen(p.label);
       entry.pairs += 1.0;
-      if (rise < kFlatSlope * run) entry.flat += 1.0, ground_pairs_ += 1.0;
-      if (rise > kSteepSlope * run) entry.steep += 1.0;
+      if (rise < kFlatSlope * kFlatSlope * run) entry.flat += 1.0, ground_pairs_ += 1.0;
+      if (rise > kSteepSlope * kSteepSlope * run) entry.steep += 1.0;
     }
 }
 
@@ -44,15 +51,13 @@ void LabelNumbering::lookAlongLines(const LabelledCloud& image)
     std::size_t points = 0;
     const auto end = [&]
     {
-      if (first != nullptr)
-        addRun(seen(first->label), std::hypot(last->x - first->x, last->y - first->y, last->z - first->z), points);
+      if (first != nullptr) addRun(seen(first->label), std::sqrt(squaredDistance(*first, *last)), points);
     };
     for (std::uint32_t column = 0; column < image.width; ++column)
     {
       const LabelledPoint& p = image.points[row * image.width + column];
       if (!isReturn(p)) continue;
-      const auto gap = [&] { return std::hypot(p.x - last->x, p.y - last->y, p.z - last->z); };
-      if (first == nullptr || p.label != first->label || gap() > kRunGap)
+      if (first == nullptr || p.label != first->label || squaredDistance(p, *last) > kRunGap * kRunGap)
       {
         end();
         first = &p;

@@ -43,6 +43,8 @@ void PredictedClasses::look(const SemanticKittiSequence& sequence, bool chosen)
   std::vector<std::uint32_t> labels;
   Projection image;
   const std::size_t looks = std::min(kLooks, sequence.size());
+  std::size_t taken = 0;
+  std::string first_error;
   for (std::size_t i = 0; i < looks; ++i)
   {
     const std::size_t scan = looks == 1 ? 0 : i * (sequence.size() - 1) / (looks - 1);
@@ -60,12 +62,14 @@ void PredictedClasses::look(const SemanticKittiSequence& sequence, bool chosen)
     try
     {
       numbering.check(image.cloud, labels);
+      ++taken;
     }
     catch (const std::invalid_argument& error)
     {
-      throw std::runtime_error(sequence.predictionFile(scan) + ": " + error.what());
+      if (first_error.empty()) first_error = sequence.predictionFile(scan) + ": " + error.what();
     }
   }
+  if (taken == 0 && !first_error.empty()) throw std::runtime_error(first_error);
   doubt_ = numbering.doubt();
 }
 

@@ -5,6 +5,7 @@
 #include "lidar_panoptic_clustering/clusterers/euclidean_clusterer.h"
 #include "lidar_panoptic_clustering/clusterers/scan_line_run_clusterer.h"
 #include "lidar_panoptic_clustering/clusterers/supervoxel_clusterer.h"
+#include "lidar_panoptic_clustering/core/parameters.h"
 
 #include <sstream>
 #include <stdexcept>
@@ -44,6 +45,7 @@ Entry entry(const std::string& name)
           {
             Config config;
             applyParameters(config, parameters);
+            requireOffOrDistance("bridge_distance_m", config.pipeline.refinement.bridge_distance_m, 10.0);
             return Algorithm{config.pipeline, std::make_unique<ClustererType>(config.clusterer)};
           }};
 }

@@ -23,7 +23,7 @@ bool isBetter(const Grid& grid, const Grid& than)
   if (grid.azimuth_step < kFiner * than.azimuth_step) return true;
   if (than.azimuth_step < kFiner * grid.azimuth_step) return false;
   if (grid.isStaggered() != than.isStaggered()) return !grid.isStaggered();
-  return grid.azimuth_step < than.azimuth_step;
+  return grid.elevation_step < 0.9 * than.elevation_step;
 }
 }  // namespace
 

@@ -37,7 +37,7 @@ std::string sequenceOf(const std::vector<ScanPoint>& points)
     ++pairs;
   }
   if (pairs == 0 || 3 * near < 2 * pairs) return "in no order of scan lines";
-  return 2 * climbs > near ? "firing after firing" : "along scan lines";
+  return 2 * climbs > near ? "firing after firing" : "in neighbouring directions";
 }
 
 void throwStaggered(double columns)
@@ -46,6 +46,15 @@ void throwStaggered(double columns)
       "expected columns of one azimuth, found neighbouring scan lines " + std::to_string(std::lround(columns)) +
       " columns apart in the mean: switch on destaggering in the driver (ouster_ros: destagger:=true), or set the "
       "parameter layout to 'ring', which places the points by their azimuth");
+}
+
+void throwTilted(double tilt)
+{
+  throw std::invalid_argument(
+      "expected a cloud in the sensor's own frame or one that is little tilted against it, found "
+      "the sensor's axis " +
+      std::to_string(std::lround(tilt * 57.29577951308232)) +
+      " degrees from the cloud's z: publish the cloud in the sensor's frame");
 }
 
 void throwNoScanLines(const RawCloud& raw, const std::vector<ScanPoint>& points)

@@ -9,7 +9,8 @@
 
 namespace lidar_panoptic_clustering
 {
-/// What the sequence of a cloud's points looks like, for messages: "firing after firing", "along scan lines" or "in no
+/// What the sequence of a cloud's points looks like, for messages: "firing after firing", "in neighbouring
+/// directions" or "in no
 /// order of scan lines". Looks at about a thousand pairs.
 std::string sequenceOf(const std::vector<ScanPoint>& points);
 
@@ -22,6 +23,8 @@ public:
 
 /// The following throw std::invalid_argument with what was expected and what was found.
 [[noreturn]] void throwStaggered(double columns);
+/// `tilt`: of the sensor's axis against the cloud's z [rad].
+[[noreturn]] void throwTilted(double tilt);
 /// `points`: of the cloud, as sent.
 [[noreturn]] void throwNoScanLines(const RawCloud& raw, const std::vector<ScanPoint>& points);
 [[noreturn]] void throwNoRing(const RawCloud& raw);

@@ -283,6 +283,7 @@ std::optional<Organizer::Decision> Organizer::decideUnfolded(const RawCloud& raw
 
 void Organizer::place(std::uint32_t rows, Decision& decision, OrganizedScan& out)
 {
+  constexpr double kEven = 0.06;  // of returns hidden in columns that fit the firings
   FoundLayout& found = decision.found;
   if (!decision.firm)
   {
@@ -294,23 +295,45 @@ void Organizer::place(std::uint32_t rows, Decision& decision, OrganizedScan& out
                                 std::to_string(rows) + " rows and " + std::to_string(found.columns) + " columns");
   out.organized_input = false;
   out.image.rings = rows;
-  projector_.project(out.points, out.labels, rows_.directions(), rows, found.columns, 0xFFFFFFFFU, out.image,
-                     rows_.columnShift(found.columns));
-  checkHidden(decision, out);
+  project(rows, found.columns, out);
+  const double most = mostHidden(decision);
+  double hidden = hiddenShare(most, out);
+  if (hidden > most && !decision.firm && columns_ == 0)
+  {
+    // few returns, or azimuths that vary, look like fewer firings
+    found.columns *= 2;
+    project(rows, found.columns, out);
+    if (hiddenShare(kEven, out) <= kEven) hidden = 0.0;
+  }
+  if (hidden > most) throwHidden(hidden, most);
   if (decision.firm) return;
   found.rows = rows;
   decision.firm = projector_.returns() >= kEnoughReturns && decision.firings > 0.0;
 }
 
-/// Two returns of one beam lie in one direction and hide each other by right.
-void Organizer::checkHidden(const Decision& decision, const OrganizedScan& out) const
+void Organizer::project(std::uint32_t rows, std::uint32_t columns, OrganizedScan& out)
 {
-  constexpr double kMostHidden = 0.12;    // KITTI's firings, corrected for the car's motion: 0.09
+  projector_.project(out.points, out.labels, rows_.directions(), rows, columns, 0xFFFFFFFFU, out.image,
+                     rows_.columnShift(columns));
+}
+
+/// The share of returns that a scan hides: what more firings than columns make unavoidable, and what their unevenness
+/// does; in KITTI's scans, corrected for the car's motion, that is 0.09. 1 where the firings are not known.
+double Organizer::mostHidden(const Decision& decision) const
+{
+  constexpr double kUneven = 0.12;
+  if (decision.firings <= 0.0 || projector_.returns() < kEnoughReturns) return 1.0;
+  return std::max(0.0, 1.0 - decision.found.columns / decision.firings) + kUneven;
+}
+
+/// The share of returns that their pixel does not show. Where it is more than `most`, second returns of one beam do not
+/// count: they lie in one direction and hide each other by right.
+double Organizer::hiddenShare(double most, const OrganizedScan& out) const
+{
   constexpr float kOneDirection = 2e-3F;  // [rad]
-  if (decision.firings <= 0.0 || projector_.returns() < kEnoughReturns) return;
-  const double most = std::max(0.0, 1.0 - decision.found.columns / decision.firings) + kMostHidden;
-  const auto returns = static_cast<double>(projector_.returns());
-  if (static_cast<double>(projector_.hiddenReturns()) <= most * returns) return;
+  const auto returns = static_cast<double>(std::max<std::size_t>(1, projector_.returns()));
+  const double share = static_cast<double>(projector_.hiddenReturns()) / returns;
+  if (share <= most) return share;
   std::size_t hidden = 0;
   for (const std::uint32_t i : projector_.hidden())
   {
@@ -320,7 +343,7 @@ void Organizer::checkHidden(const Decision& decision, const OrganizedScan& out) 
     { return Eigen::Vector3f(out.points[k].x, out.points[k].y, out.points[k].z).normalized(); };
     hidden += (vector(i) - vector(owner)).norm() > kOneDirection;
   }
-  if (static_cast<double>(hidden) > most * returns) throwHidden(static_cast<double>(hidden) / returns, most);
+  return static_cast<double>(hidden) / returns;
 }
 
 void Organizer::readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found)

@@ -64,7 +64,7 @@ Organizer::Decision Organizer::decideRows(const RawCloud& raw, const ScanFields&
   out.layout = decision.found.layout = Layout::kOrganized;
   out.points.clear();
   const Grid grid = gridOf(raw, fields, out, decision);
-  if (grid.isStaggered()) throwStaggered(grid.staggered_columns);
+  if (grid.isStaggered()) refuseStaggered(raw, fields, out, grid);
   const RawCloud view = grid.reshaped ? reshapedView(raw) : raw;
   decision.placement.orientation = grid.orientation;
   placeRows(view, fields, decision.placement, out);
@@ -79,6 +79,16 @@ Organizer::Decision Organizer::decideRows(const RawCloud& raw, const ScanFields&
   if (!decision.placement.row_of_line.empty()) placeRows(view, fields, decision.placement, out);
   decision.firm = grid_.probe().enough() && grid_.probe().orientation() == grid.orientation;
   return decision;
+}
+
+/// Azimuths about the cloud's z mean little where that lies far from the sensor's axis.
+void Organizer::refuseStaggered(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, const Grid& grid)
+{
+  constexpr double kTilted = 0.6;  // [rad]
+  const std::uint32_t width = grid.reshaped ? raw.height : raw.width;
+  const double tilt = grid_.orderLines(readAll(raw, fields, out), width, grid.orientation).tiltRad();
+  if (tilt > kTilted) throwTilted(tilt);
+  throwStaggered(grid.staggered_columns);
 }
 
 void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& decision)

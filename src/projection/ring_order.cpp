@@ -13,11 +13,16 @@ void RingOrder::look(const std::vector<ScanPoint>& scan, const std::vector<Point
 {
   sum(scan, directions, rings);
   if (remember) recall();
+  tilt_ = 0.0;
   lookAlong(Eigen::Vector3d::UnitZ());
   if (!isMonotone() && !canBeSorted())
   {
-    lookAlong(axisOfRings());
-    if (!isMonotone() && !canBeSorted()) lookAlong(Eigen::Vector3d::UnitZ());
+    const Eigen::Vector3d axis = axisOfRings();
+    lookAlong(axis);
+    if (isMonotone() || canBeSorted())
+      tilt_ = std::acos(std::min(1.0, axis.z()));
+    else
+      lookAlong(Eigen::Vector3d::UnitZ());
   }
   row_of_ring_.resize(rings);
   if (!isMonotone() && canBeSorted()) return sortByElevation();

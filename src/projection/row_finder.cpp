@@ -99,9 +99,18 @@ std::uint32_t RowFinder::byUnfolding(const std::vector<ScanPoint>& scan, std::ui
 void RowFinder::unfold(const std::vector<ScanPoint>& scan, const Sweep& sweep)
 {
   unfolded_rings_ = unfoldScan(scan, sweep, directions_);
-  elevation_steps_ = 0;
+  constexpr std::size_t kStride = 16;
+  constexpr float kSmallStep = 0.2F;  // [rad]
+  const float sense = sweep.clockwise ? -1.0F : 1.0F;
+  elevation_steps_ = forward_ = backward_ = 0;
   const ScanPoint* last = nullptr;
   std::uint32_t ring = 0;
+  for (std::size_t i = kStride; i < directions_.size(); i += kStride)
+  {
+    const float step = sense * (directions_[i].azimuth - directions_[i - 1].azimuth);  // NaN goes no way
+    forward_ += step > 0.0F && step < kSmallStep;
+    backward_ += step < 0.0F && step > -kSmallStep;
+  }
   const auto sine = [](const ScanPoint& p) { return p.z / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); };
   for (std::size_t i = 0; i < scan.size(); ++i)
   {
@@ -119,7 +128,7 @@ bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
   const std::uint32_t rings = unfolded_rings_;
   if (rings < 2 || rings > kMostRings) return false;
   if (rows > 0 && (rings > rows || 2 * rings < rows)) return false;
-  if (5 * elevation_steps_ < 4 * (rings - 1)) return false;
+  if (20 * elevation_steps_ < 19 * (rings - 1) || forward_ < 3 * backward_) return false;
   return order_.isMonotone() || order_.areDistinct();
 }
 

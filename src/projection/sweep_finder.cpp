@@ -53,6 +53,18 @@ std::optional<bool> SweepFinder::goesClockwise() const
   return right > left;
 }
 
+/// Several times what elevations usually differ by from return to return, as beams beside the axis make them.
+float SweepFinder::leastStep()
+{
+  steps_.clear();
+  for (std::size_t i = 1; i < returns_.size(); i += 7)
+    steps_.push_back(std::abs(returns_[i].sine - returns_[i - 1].sine));
+  if (steps_.empty()) return kElevationStep;
+  const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>(steps_.size() / 2);
+  std::nth_element(steps_.begin(), middle, steps_.end());
+  return std::max(kElevationStep, 4.0F * *middle);
+}
+
 void SweepFinder::countArcs(bool clockwise)
 {
   arcs_.assign(kBins + 1, 0);
@@ -62,10 +74,12 @@ void SweepFinder::countArcs(bool clockwise)
     const auto found = static_cast<std::uint32_t>(turn(sense * r.azimuth) * (static_cast<float>(kBins) / kFullTurn));
     return std::min(found, kBins - 1);
   };
+  const float least = leastStep();
   for (std::size_t i = 1; i < returns_.size(); ++i)
   {
-    if (std::abs(returns_[i].sine - returns_[i - 1].sine) < kElevationStep) continue;
-    const std::uint32_t begin = bin(returns_[i - 1]), end = bin(returns_[i]);
+    if (std::abs(returns_[i].sine - returns_[i - 1].sine) < least) continue;
+    std::uint32_t begin = bin(returns_[i - 1]), end = bin(returns_[i]);
+    if (begin > end && begin - end < kOverlap) std::swap(begin, end);  // a ring that ends where the next has begun
     ++arcs_[begin], --arcs_[end + 1];
     if (begin > end) ++arcs_[0], --arcs_[kBins];  // over the wrap
   }

@@ -7,6 +7,8 @@
 
 #include <pcl_conversions/pcl_conversions.h>
 
+#include <utility>
+
 namespace lidar_panoptic_clustering
 {
 void ClusterNodelet::onInit()
@@ -150,8 +152,9 @@ void ClusterNodelet::process(const LabelledCloud& cloud)
 {
   {
     const std::lock_guard<std::mutex> lock(pending_mutex_);
-    if (pending_) pipeline_->reconfigure(pending_->pipeline, std::move(pending_->clusterer));
-    pending_.reset();
+    // taken out first: one that is refused is not tried again, with half of it gone
+    if (auto pending = std::exchange(pending_, std::nullopt))
+      pipeline_->reconfigure(pending->pipeline, std::move(pending->clusterer));
   }
 
   pipeline_->segment(cloud);

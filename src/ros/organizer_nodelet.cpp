@@ -1,5 +1,6 @@
 #include "ros/organizer_nodelet.h"
 
+#include "core/plain_numbers.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
 #include "ros/parameter_server.h"
@@ -234,6 +235,7 @@ double OrganizerNodelet::label(const sensor_msgs::PointCloud2& message, const La
   {
     const double milliseconds = organizer_->label(message, labels, all_points, frame);
     warn("labels", organizer_->doubt());
+    tellHeight();
     return milliseconds;
   }
   catch (const std::invalid_argument& error)
@@ -260,6 +262,15 @@ void OrganizerNodelet::tellLayout()
   NODELET_INFO("clouds on %s: %s", getPrivateNodeHandle().resolveName("input").c_str(), text.c_str());
   diagnostics_.setText("layout", text);
   warn("layout", found.doubt);
+}
+
+void OrganizerNodelet::tellHeight()
+{
+  const auto height = organizer_->sensorHeight();
+  if (!height) return;
+  const std::string text = fixedText(*height, 2) + " m over the ground";
+  diagnostics_.setText("sensor", text);
+  if (!std::exchange(told_height_, true)) NODELET_INFO("sensor found %s", text.c_str());
 }
 
 void OrganizerNodelet::warn(const char* subject, const std::string& doubt)

@@ -85,6 +85,8 @@ private:
 
   /// What clouds are taken for: once in the log and from then on in the diagnostics, again when it changes.
   void tellLayout();
+  /// Likewise, of each scan.
+  void tellHeight();
   /// Of what is doubtful about `subject`: once in the log, and in the diagnostics for as long as it holds.
   void warn(const char* subject, const std::string& doubt);
   void refuse(const std::string& error);
@@ -99,7 +101,8 @@ private:
   LatchedInput<sensor_msgs::PointCloud2> latched_;
   std::optional<LabelMatcher::Pair> latched_pair_;  ///< the latched cloud and its labels
   std::uint64_t without_scan_ = 0;
-  std::uint32_t told_layout_ = 0;              ///< FoundLayout::change
+  std::uint32_t told_layout_ = 0;  ///< FoundLayout::change
+  bool told_height_ = false;
   std::map<std::string, std::string> doubts_;  ///< by subject
   StreamDiagnostics diagnostics_;
 

@@ -10,6 +10,7 @@
 #include <sensor_msgs/PointCloud2.h>
 
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -55,6 +56,8 @@ public:
   /// Whether labels come on a topic of their own.
   bool isSeparate() const { return config_.labeller.separate(); }
   const Organizer& organizer() const { return organizer_; }
+  /// See ScanLabeller::sensorHeight().
+  std::optional<float> sensorHeight() const { return labeller_.sensorHeight(); }
   /// What is doubtful about the labels, see ScanLabeller::doubt().
   const std::string& doubt() const { return labeller_.doubt(); }
 

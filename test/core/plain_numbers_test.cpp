@@ -67,10 +67,10 @@ TEST_F(InALocaleWithCommas, TablesSensorsAndParametersAreTheSame)
 {
   const ClassTable table = ClassTable::load("semantic_kitti");
   EXPECT_EQ(table[table.findByName("car")].link_distance_m, 0.8F);
-  const SensorModel model = SensorModel::load("vlp16");
-  EXPECT_EQ(model.columns, SensorModel::parse("elevations_deg: [1.5, 0.5]\ncolumns: 1800", "s").columns);
-  EXPECT_NEAR(SensorModel::parse("elevations_deg: [1.5, 0.5]\ncolumns: 1800", "s").elevations_rad[0],
-              1.5 * 3.14159265 / 180, 1e-6);
+  EXPECT_EQ(SensorModel::load("vlp16").columns, 1808U);
+  const SensorModel model = SensorModel::parse("elevations_deg: [1.5, 0.5]\ncolumns: 1800", "s");
+  EXPECT_EQ(model.columns, 1800U);
+  EXPECT_NEAR(model.elevations_rad[0], 1.5 * 3.14159265 / 180, 1e-6);
   EXPECT_EQ(detail::toDouble("p", std::string("0.25"), 0.0, 1.0), 0.25);
   EXPECT_EQ(parameterText(0.25), "0.25");
   EXPECT_EQ(parameterText(12345), "12345");

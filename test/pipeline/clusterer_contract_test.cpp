@@ -140,8 +140,11 @@ TEST(ClustererContract, TinyDistancesJoinNothingFarAway)
     for (const double distance : {1e-7, 0.0001, 0.00099, -1.0, 10.5})
       EXPECT_THROW(makeAlgorithm(name, {{"distance_m", distance}}), std::invalid_argument) << distance;
   EXPECT_THROW(makeAlgorithm("depth", {{"max_distance_m", 1e-30}}), std::invalid_argument);
-  Algorithm made = makeAlgorithm("depth", {{"bridge_distance_m", 1e-30}});
-  EXPECT_THROW(FramePipeline(kittiTable(), made.pipeline, std::move(made.clusterer)), std::invalid_argument);
+  EXPECT_THROW(makeAlgorithm("depth", {{"bridge_distance_m", 1e-30}}), std::invalid_argument);
+  PipelineConfig config;
+  config.refinement.bridge_distance_m = 1e-30;
+  EXPECT_THROW(FramePipeline(kittiTable(), config, std::make_unique<BrokenClusterer>(std::vector<std::uint32_t>())),
+               std::invalid_argument);
 
   Algorithm a = makeAlgorithm("birds_eye",
                               {{"distance_m", 0.001}, {"split", false}, {"merge", false}, {"bridge_distance_m", 0.0}});

@@ -125,7 +125,8 @@ TEST(HiddenClasses, OrganisedCloudsHideNothing)
   const LabelledCloud scene = randomScan(3, 8, 64);
   std::uint32_t step = 0;
   constexpr auto kF32 = NumberType::kFloat32;
-  RawMessage raw(8, 64, packed({{"x", kF32}, {"y", kF32}, {"z", kF32}}, step), step);
+  const auto fields = packed({{"x", kF32}, {"y", kF32}, {"z", kF32}}, step);
+  RawMessage raw(8, 64, fields, step);
   for (std::uint32_t i = 0; i < scene.size(); ++i)
     raw.setPoint(i / 64, i % 64, scene.points[i].x, scene.points[i].y, scene.points[i].z);
   OrganizerConfig config;

@@ -294,7 +294,7 @@ TEST(ReadSerialized, MessagesThatStayWhatTheyAreAreReadWholeOrNotAtAll)
 TEST(ReadSerialized, TruncatedMessagesAreRefused)
 {
   const auto message = toRos(twoPoints(NumberType::kFloat32, NumberType::kUint8, 0));
-  const std::vector<std::uint8_t> bytes = serialized(*message);
+  std::vector<std::uint8_t> bytes = serialized(*message);
   LabelledCloud cloud;
   readSerialized(bytes.data(), static_cast<std::uint32_t>(bytes.size()), cloud);
   expectTwoPoints(cloud);

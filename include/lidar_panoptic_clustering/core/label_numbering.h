@@ -24,8 +24,8 @@ std::string idText(std::uint32_t id);
 ///   upright, an ignored id for much of the ground; and from runs along a line: persons and two-wheelers many times
 ///   longer than any.
 ///
-/// Linear in the pixels, of which the shapes look at a quarter; allocates only where a new id comes. Not shared between
-/// threads.
+/// Linear in the pixels, of which the shapes look at a quarter, after the first scans in every fourth; allocates only
+/// where a new id comes. Not shared between threads.
 class LabelNumbering
 {
 public:
@@ -106,6 +106,7 @@ private:
 
   Misfit misfit(const Seen& id, const Candidate& candidate) const;
   bool fits(const Candidate& candidate) const;
+  std::string expectedTable() const;
   std::string fittingTables() const;
   void requireIds();
   void requireShapes() const;

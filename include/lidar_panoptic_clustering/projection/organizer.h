@@ -104,11 +104,15 @@ private:
   Decision takeInOrder(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
 
   Grid gridOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, Decision& decision);
+  [[noreturn]] void refuseStaggered(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out,
+                                    const Grid& grid);
   void orderLines(const RawCloud& view, OrganizedScan& out, Decision& decision);
   void followRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found);
   void place(std::uint32_t rows, Decision& decision, OrganizedScan& out);
-  void checkHidden(const Decision& decision, const OrganizedScan& out) const;
+  void project(std::uint32_t rows, std::uint32_t columns, OrganizedScan& out);
+  double mostHidden(const Decision& decision) const;
+  double hiddenShare(double most, const OrganizedScan& out) const;
   Orientation assumedOrientation(const RawCloud& raw) const;
 
   OrganizerConfig config_;

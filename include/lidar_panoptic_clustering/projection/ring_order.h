@@ -42,6 +42,8 @@ public:
   /// does so at all. False where there are too few returns to tell.
   bool tellsNothing() const;
 
+  /// Between the axis of the rings that could be told apart over it and the cloud's z.
+  double tiltRad() const { return tilt_; }
   double scatterRad() const { return scatter_; }          ///< standard deviation within a ring, mean over rings
   double rangeRad() const { return highest_ - lowest_; }  ///< from the lowest ring's mean to the highest's
 
@@ -63,7 +65,7 @@ private:
 
   std::vector<Ring> rings_, remembered_;
   int falls_ = 0, rises_ = 0, seen_ = 0;  ///< steps from one ring that was seen to the next
-  double largest_fall_ = 0.0, largest_rise_ = 0.0, lowest_ = 0.0, highest_ = 0.0, scatter_ = 0.0;
+  double largest_fall_ = 0.0, largest_rise_ = 0.0, lowest_ = 0.0, highest_ = 0.0, scatter_ = 0.0, tilt_ = 0.0;
   std::vector<std::uint32_t> row_of_ring_, ring_of_row_;
   std::vector<double> elevation_;  ///< by ring; of rings not seen, the one before's
   mutable std::vector<double> sorted_;

@@ -29,6 +29,8 @@ public:
 private:
   static constexpr std::uint32_t kBins = 4096;  // of the turn: a column of the finest sensor there is
 
+  static constexpr std::uint32_t kOverlap = kBins / 20;  // as the counter of rings lets points step back
+
   struct Return
   {
     float azimuth, sine;
@@ -36,10 +38,12 @@ private:
 
   void gather(const std::vector<ScanPoint>& scan);
   std::optional<bool> goesClockwise() const;
+  float leastStep();
   void countArcs(bool clockwise);
   Sweep bestStart(bool clockwise) const;
 
   std::vector<Return> returns_;
+  std::vector<float> steps_;
   std::vector<std::int32_t> arcs_;  ///< by bin of the azimuth in the sense of the sweep: arcs that hold it
 };
 }  // namespace lidar_panoptic_clustering

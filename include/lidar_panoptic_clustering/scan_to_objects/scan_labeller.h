@@ -62,6 +62,13 @@ public:
   /// the pixels always are.
   void takeGeometry(OrganizedScan& scan, bool all);
 
+  /// Of the last scan labelled by geometry [m]; nothing where no ground was found, and with labels from elsewhere.
+  std::optional<float> sensorHeight() const
+  {
+    if (!ground_.foundGround()) return std::nullopt;
+    return ground_.groundPlane().heightOf(0.0F, 0.0F, 0.0F);
+  }
+
   /// Of the labels that go out.
   const std::shared_ptr<const ClassTable>& classTable() const { return class_table_; }
   /// Which other tables the labels so far may be of, see LabelNumbering::doubt().
