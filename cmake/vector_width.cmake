@@ -8,13 +8,15 @@ if(NOT vector_width_found AND vector_width_flags MATCHES "-m(arch|cpu|tune)=")
   # another processor by name: the compiler knows whether that has AVX
   separate_arguments(vector_width_list UNIX_COMMAND "${vector_width_flags}")
   execute_process(COMMAND ${CMAKE_CXX_COMPILER} ${vector_width_list} -dM -E -x c++ /dev/null
-    OUTPUT_VARIABLE vector_width_macros ERROR_QUIET)
+                  OUTPUT_VARIABLE vector_width_macros ERROR_QUIET)
   if(vector_width_macros MATCHES "#define __AVX__ ")
     string(REGEX MATCH "-march=[^ ]*" vector_width_found "${vector_width_flags}")
   endif()
 endif()
 if(vector_width_found)
-  message(FATAL_ERROR "'${vector_width_found}' in CMAKE_CXX_FLAGS (or CXXFLAGS) makes Eigen align memory to 32 bytes, "
-    "but PCL from the distribution was built for 16: programs that use both crash. Build without it (remove "
-    "${CMAKE_BINARY_DIR}/CMakeCache.txt), or with -march=x86-64-v2, which has no AVX.")
+  message(
+    FATAL_ERROR
+      "'${vector_width_found}' in CMAKE_CXX_FLAGS (or CXXFLAGS) makes Eigen align memory to 32 bytes, "
+      "but PCL from the distribution was built for 16: programs that use both crash. Build without it (remove "
+      "${CMAKE_BINARY_DIR}/CMakeCache.txt), or with -march=x86-64-v2, which has no AVX.")
 endif()

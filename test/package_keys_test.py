@@ -92,7 +92,7 @@ class PackageKeys(unittest.TestCase):
 
     def test_catkin_finds_only_what_is_declared(self):
         cmake = (ROOT / 'CMakeLists.txt').read_text()
-        components = re.search(r'find_package\(catkin REQUIRED COMPONENTS([^)]*)\)', cmake).group(1).split()
+        components = re.search(r'find_package\(\s*catkin\s+REQUIRED\s+COMPONENTS([^)]*)\)', cmake).group(1).split()
         self.assertIn('roscpp', components)
         self.assertEqual(sorted(set(components) - declared(self.xml, LIBRARY_TAGS)), [])
 
