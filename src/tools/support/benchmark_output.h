@@ -95,6 +95,7 @@ private:
          << "class table: " << settings.class_table << "\n"
          << "columns: " << settings.columns << "\n"
          << "algorithm: " << row.algorithm << "\n";
+    if (settings.track) text << "tracked: true\n";
     const ParameterMap parameters = row.allParameters();
     for (const ParameterInfo& info : algorithmParameters(row.algorithm))
     {
