@@ -1,10 +1,13 @@
 #include "bags/sequence_bag.h"
 
 #include "bags/point_message.h"
+#include "core/aside_file.h"
+#include "core/plain_numbers.h"
 #include "ros/pose_message.h"
 
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
+#include "lidar_panoptic_clustering/datasets/predicted_classes.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -14,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -35,17 +39,22 @@ rosbag::CompressionType compressionOf(const std::string& name)
 class AsideBag
 {
 public:
-  AsideBag(const std::string& path, rosbag::CompressionType compression) : path_(path), aside_(path + ".part")
+  AsideBag(const std::string& path, rosbag::CompressionType compression) : path_(path)
   {
     const auto status = std::filesystem::status(path);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
       throw std::runtime_error("cannot write " + path + ": expected a regular file or none");
-    attempt(
-        [&]
-        {
-          bag_->setCompression(compression);
-          bag_->open(aside_, rosbag::bagmode::Write);
-        });
+    aside_ = makeAside(path);
+    try
+    {
+      bag_->setCompression(compression);
+      bag_->open(aside_, rosbag::bagmode::Write);
+    }
+    catch (const std::exception& error)
+    {
+      std::filesystem::remove(aside_);
+      throw std::runtime_error("cannot write " + path_ + ": " + error.what());
+    }
   }
   ~AsideBag()
   {
@@ -115,7 +124,7 @@ class SequenceBagWriter
 public:
   explicit SequenceBagWriter(const SequenceBagConfig& config)
       : config_(config),
-        table_(ClassTable::load(config.class_table)),
+        table_(std::make_shared<const ClassTable>(ClassTable::load(config.class_table))),
         sequence_(config.dataset, config.sequence, config.semantics),
         projector_(config.projection),
         poses_(sequence_.readPoses()),
@@ -124,10 +133,15 @@ public:
     if (config.frame_id.empty() || config.frame_id.front() == '/')
       throw std::invalid_argument("frame id: expected a name without a leading slash, found '" + config.frame_id + "'");
     if (!(config.start_s >= 1.0 && config.start_s <= 4e9))
-      throw std::invalid_argument("start: expected 1 to 4e9 seconds, found " + std::to_string(config.start_s));
+      throw std::invalid_argument("start: expected 1 to 4e9 seconds, found " + shortText(config.start_s));
     if (config.first >= sequence_.size())
       throw std::invalid_argument("first: expected one of the scans 0 to " + std::to_string(sequence_.size() - 1) +
                                   " of sequence " + sequence_.name() + ", found " + std::to_string(config.first));
+    if (!config.label_table.empty() && config.semantics.empty())
+      throw std::invalid_argument("label table: expected predictions whose ids it says, found none");
+    if (config.semantics.empty()) return;
+    predicted_.emplace(sequence_, table_, config.label_table);
+    summary_.doubt = predicted_->doubt();
   }
 
   SequenceBagSummary write(const SequenceBagProgress& progress)
@@ -166,7 +180,7 @@ private:
     bag.write("/points", header.stamp, message_);
     if (!truth_.empty())
     {
-      paintGroundTruth(projection_, truth_, table_, ground_truth_);
+      paintGroundTruth(projection_, truth_, *table_, ground_truth_);
       pcl::toROSMsg(ground_truth_, message_);
       message_.header = header;
       bag.write("/ground_truth", header.stamp, message_);
@@ -183,7 +197,7 @@ private:
     sequence_.readScan(scan, points_);
     truth_.clear();
     if (sequence_.hasLabels()) sequence_.readLabels(scan, points_.size(), truth_);
-    if (!config_.semantics.empty()) sequence_.readPredictions(scan, points_.size(), predictions_);
+    if (predicted_) predicted_->read(sequence_, scan, points_.size(), predictions_);
   }
 
   ros::Time stampOf(std::size_t scan) const
@@ -196,8 +210,9 @@ private:
   }
 
   const SequenceBagConfig& config_;
-  ClassTable table_;
+  std::shared_ptr<const ClassTable> table_;
   SemanticKittiSequence sequence_;
+  std::optional<PredictedClasses> predicted_;
   PointProjector projector_;
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<double> times_;

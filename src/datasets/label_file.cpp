@@ -1,11 +1,12 @@
+#include "core/aside_file.h"
 #include "datasets/binary_file.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
 #include <array>
-#include <cerrno>
-#include <cstdio>
+#include <cmath>
 #include <cstring>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -15,38 +16,40 @@ namespace
 {
 constexpr std::uint32_t kMaxInstance = 0xFFFFU;
 
-[[noreturn]] void throwNotWritten(const std::string& path, int error)
+/// Whether each label but 0 is, bit for bit, a whole number as float32, which the class ids of no file all are. Returns
+/// the first of them, else nothing.
+std::optional<float> firstFloat(const std::vector<std::uint32_t>& labels)
 {
-  throw std::runtime_error("cannot write " + path + ": " + std::strerror(error));
-}
-
-/// Returns 0, or the error.
-int writeAll(const std::string& path, const std::vector<std::uint32_t>& labels)
-{
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return errno;
-  std::setvbuf(file, nullptr, _IONBF, 0);
-  const bool written = std::fwrite(labels.data(), sizeof(std::uint32_t), labels.size(), file) == labels.size();
-  const int error = written ? 0 : errno;
-  return std::fclose(file) == 0 || error != 0 ? error : errno;  // a network's file system reports a full disk here
+  constexpr float kLargestId = 65535.0F;
+  std::optional<float> first;
+  for (const std::uint32_t label : labels)
+  {
+    if (label == 0) continue;
+    float number = 0.0F;
+    std::memcpy(&number, &label, sizeof(number));
+    if (!(number >= -1.0F && number <= kLargestId) || number != std::floor(number)) return std::nullopt;
+    if (!first) first = number;
+  }
+  return first;
 }
 }  // namespace
 
 void readLabelFile(const std::string& path, std::vector<std::uint32_t>& labels)
 {
   readBinaryFile(path, labels);
+  if (const auto number = firstFloat(labels))
+    throw std::runtime_error(path + ": expected uint32 labels, found float32 numbers, the first of them " +
+                             std::to_string(std::lround(*number)) +
+                             ": write them as integers (numpy: labels.astype('<u4').tofile(..))");
 }
 
 void writeLabelFile(const std::string& path, const std::vector<std::uint32_t>& labels)
 {
   std::error_code ignored;
   fs::create_directories(fs::path(path).parent_path(), ignored);  // what went wrong shows when the file is opened
-  const std::string aside = path + ".part";
-  int error = writeAll(aside, labels);
-  if (error == 0 && std::rename(aside.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  fs::remove(aside, ignored);
-  throwNotWritten(path, error);
+  AsideFile file(path);
+  file.write(labels.data(), labels.size() * sizeof(std::uint32_t));
+  file.save();
 }
 
 void encodeLabels(const std::vector<std::uint32_t>& classes, const std::vector<std::uint32_t>& instances,

@@ -1,7 +1,9 @@
+#include "core/plain_numbers.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/evaluation/object_errors.h"
 #include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
 #include "ros/cloud_subscription.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 #include "ros/stamp_matcher.h"
 
@@ -71,6 +73,7 @@ private:
     auto& nh = getPrivateNodeHandle();
     try
     {
+      warnOfUnusedParameters(nh, namesOf(describeParameters(config_), {"class_table"}));
       applyParameters(config_, readParameters(nh, describeParameters(config_)));
       table_ =
           std::make_shared<const ClassTable>(ClassTable::load(nh.param<std::string>("class_table", "semantic_kitti")));
@@ -78,13 +81,17 @@ private:
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
     matcher_ = std::make_unique<StampMatcher<CloudPtr>>(static_cast<std::size_t>(config_.queue_size));
     startAgain();
-    for (Figure& figure : figures_) figure.publisher = nh.advertise<std_msgs::Float64>(figure.name, 10);
+    for (Figure& figure : figures_) figure.publisher = advertiseAlone<std_msgs::Float64>(nh, figure.name, 10);
 
-    updater_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), nh, getName());
+    {
+      const std::lock_guard<std::mutex> lock(linkMutex());
+      updater_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), nh, getName());
+    }
     updater_->setHardwareID("none");
     updater_->add("panoptic quality", this, &EvaluatorNodelet::report);
     timer_ = nh.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_->update(); });
@@ -181,15 +188,16 @@ private:
     else
       status.summary(Level::OK, quality_->scanCount() > 0 ? "evaluating" : "no pair of clouds yet");
     const PanopticFigures values = quality_->figures();
+    const PlainNumbers plain;
     for (const Figure& figure : figures_) status.addf(figure.name, "%.4f", values.*figure.value);
-    status.add("scans evaluated", quality_->scanCount());
-    status.add("true objects", objects_.total());
-    status.add("true objects split", objects_.split);
-    status.add("true objects merged", objects_.merged);
-    status.add("true objects missed", objects_.missed);
-    status.add("predictions without ground truth", matcher_->unmatchedLeft());
-    status.add("ground truths without prediction", matcher_->unmatchedRight());
-    status.add("clouds refused", refused_);
+    status.add("scans evaluated", std::to_string(quality_->scanCount()));
+    status.add("true objects", std::to_string(objects_.total()));
+    status.add("true objects split", std::to_string(objects_.split));
+    status.add("true objects merged", std::to_string(objects_.merged));
+    status.add("true objects missed", std::to_string(objects_.missed));
+    status.add("predictions without ground truth", std::to_string(matcher_->unmatchedLeft()));
+    status.add("ground truths without prediction", std::to_string(matcher_->unmatchedRight()));
+    status.add("clouds refused", std::to_string(refused_));
   }
 
   /// Class ids and instances of a cloud's pixels.

@@ -1,6 +1,8 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -104,8 +106,11 @@ TEST(ClassTable, NamesFileAndClassInEachError)
             in_car + ": has no 'ids', expected a list of raw ids");
   EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [], color: [1, 2, 3]}"),
             in_car + ": ids is empty, expected at least one raw id");
-  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [-1], color: [1, 2, 3]}"),
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [-1], color: [1, 2, 3]}"), in_car + ": id -1 is below 0");
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [1.5], color: [1, 2, 3]}"),
             in_car + ": 'ids' must be a list of raw ids");
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [5, 10, 5], color: [1, 2, 3]}"),
+            in_car + ": id 5 is there twice");
   EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: 10, color: [1, 2, 3]}"),
             in_car + ": 'ids' must be a list of raw ids");
   EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [65536], color: [1, 2, 3]}"),
@@ -124,7 +129,7 @@ TEST(ClassTable, NamesFileAndClassInEachError)
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2]}"),
             in_car + ": has no 'link', expected a distance in metres");
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2], link: 0}"),
-            in_car + ": link must be above 0 m");
+            in_car + ": link must be from 0.05 to 100 m, found 0");
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2], link: wide}"),
             in_car + ": 'link' must be a distance in metres");
   EXPECT_EQ(errorOfClasses(car + ", " + car), in_car + " is there twice");
@@ -138,6 +143,35 @@ TEST(ClassTable, NamesFileAndClassInEachError)
   EXPECT_EQ(errorOfClasses(road + "[way]}, {name: path, kind: stuff, ids: [5], color: [1, 2, 3], aliases: [way]}"),
             "my.yaml: class 'path': alias 'way' already belongs to class 'road'");
   EXPECT_EQ(errorOfClasses("car"), "my.yaml: class 1 has no 'name'");
+}
+
+/// What the algorithms' grids hold; a cell of nothing, or of a light-year, is none.
+TEST(ClassTable, NumbersHaveARange)
+{
+  const std::string head = "{name: car, kind: thing, ids: [10], color: [1, 2, 3], ";
+  const std::string in_car = "my.yaml: class 'car': ";
+  for (const char* link : {"1e-30", "0.049", "100.5", "1e30", "1e300", ".inf", "-.inf", ".nan", "-1"})
+    EXPECT_EQ(errorOfClasses(head + "size: [4, 2], link: " + link + "}").rfind(in_car + "link must be from 0.05 ", 0),
+              0U)
+        << link;
+  for (const char* size : {"[1e30, 2]", "[.inf, 2]", "[1001, 2]"})
+    EXPECT_EQ(errorOfClasses(head + "link: 1, size: " + size + "}").rfind(in_car + "length must be from 0.01 ", 0), 0U)
+        << size;
+  EXPECT_EQ(errorOfClasses(head + "link: 1, size: [4, 1e-30]}"),
+            in_car + "width must be from 0.01 to 1000 m, found 1e-30");
+  EXPECT_EQ(errorOfClasses(head + "size: [1000, 0.01], link: 0.05}"), "");
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [99999999999999999999], color: [1, 2, 3]}"),
+            in_car + "'ids' must be a list of raw ids");
+}
+
+TEST(ClassTable, NestingHasAnEnd)
+{
+  const std::string deep(200000, '[');
+  EXPECT_EQ(errorOf("classes: " + deep), "my.yaml: nested more than 64 deep");
+  std::string dashes;
+  for (int i = 0; i < 100000; ++i) dashes += "- ";
+  EXPECT_EQ(errorOf(dashes), "my.yaml: nested more than 64 deep");
+  EXPECT_EQ(errorOf("# " + std::string(200, '-') + "\nclasses: []"), "my.yaml: the list 'classes' is empty");
 }
 
 TEST(ClassTable, WhatIsNoTableIsSaidSo)
@@ -178,13 +212,30 @@ TEST(ClassTable, LoadsAFileAndSaysWhatThereIsWhereItCannot)
     {
       EXPECT_EQ(std::string(error.what()), "class table '" + name +
                                                "': cannot be read; expected a YAML file or one of nuscenes, "
-                                               "object, semantic_kitti");
+                                               "nuscenes_training, nuscenes_training_less_one, object, "
+                                               "semantic_kitti, semantic_kitti_training, "
+                                               "semantic_kitti_training_less_one");
     }
+}
+
+TEST(ClassTable, FilesThatNeverEndAreNotBegunWith)
+{
+  const auto pipe = std::filesystem::temp_directory_path() / ("class_table_pipe_" + std::to_string(getpid()));
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& name : {pipe.string(), std::string("/dev/zero")})
+    EXPECT_THROW(ClassTable::load(name), std::runtime_error) << name;
+  std::filesystem::remove(pipe);
+  std::ofstream(pipe) << "#" << std::string(2 << 20, ' ');
+  EXPECT_THROW(ClassTable::load(pipe.string()), std::runtime_error);
+  std::filesystem::remove(pipe);
 }
 
 TEST(ClassTable, ShippedTablesAreTheFilesOfConfig)
 {
-  EXPECT_EQ(ClassTable::shippedNames(), std::vector<std::string>({"nuscenes", "object", "semantic_kitti"}));
+  EXPECT_EQ(
+      ClassTable::shippedNames(),
+      std::vector<std::string>({"nuscenes", "nuscenes_training", "nuscenes_training_less_one", "object",
+                                "semantic_kitti", "semantic_kitti_training", "semantic_kitti_training_less_one"}));
   for (const auto& name : ClassTable::shippedNames())
   {
     const ClassTable shipped = ClassTable::load(name), file = ClassTable::load("config/" + name + ".yaml");
@@ -234,6 +285,47 @@ TEST(ClassTable, SemanticKittiIsItsOfficialLearningMap)
   EXPECT_EQ(found_things, things);
   EXPECT_EQ(found_stuff, stuff);
   EXPECT_EQ(found_ignored, std::set<std::uint32_t>({0, 1, 52, 99}));
+}
+
+/// learning_map of semantic-kitti-api, and the order of nuScenes' challenge.
+TEST(ClassTable, TrainingIdsAreTheirDataSets)
+{
+  const std::vector<std::string> kitti = {"car",      "bicycle",      "motorcycle",   "truck",       "other-vehicle",
+                                          "person",   "bicyclist",    "motorcyclist", "road",        "parking",
+                                          "sidewalk", "other-ground", "building",     "fence",       "vegetation",
+                                          "trunk",    "terrain",      "pole",         "traffic-sign"};
+  const std::vector<std::string> nuscenes = {
+      "barrier",    "bicycle",      "bus",     "car",       "construction_vehicle", "motorcycle",
+      "pedestrian", "traffic_cone", "trailer", "truck",     "driveable_surface",    "other_flat",
+      "sidewalk",   "terrain",      "manmade", "vegetation"};
+  for (const auto& [name, classes] : {std::make_pair(std::string("semantic_kitti"), kitti), {"nuscenes", nuscenes}})
+  {
+    const ClassTable raw = ClassTable::load(name), from_one = ClassTable::load(name + "_training"),
+                     from_zero = ClassTable::load(name + "_training_less_one");
+    ASSERT_EQ(raw.size(), classes.size() + 2) << name;
+    for (std::uint32_t i = 0; i < classes.size(); ++i)
+      for (const ClassInfo& info : {from_one[from_one.find(i + 1)], from_zero[from_zero.find(i)]})
+      {
+        EXPECT_EQ(info.name, classes[i]) << name << " " << i;
+        const ClassInfo& same = raw[raw.findByName(classes[i])];
+        EXPECT_EQ(info.kind, same.kind) << info.name;
+        EXPECT_EQ(info.rgb, same.rgb) << info.name;
+        EXPECT_EQ(info.length_m, same.length_m) << info.name;
+        EXPECT_EQ(info.link_distance_m, same.link_distance_m) << info.name;
+        EXPECT_EQ(info.aliases, same.aliases) << info.name;
+      }
+    EXPECT_EQ(from_one[from_one.find(0)].name, "ignored");
+    EXPECT_EQ(from_zero[from_zero.find(255)].name, "ignored");
+    EXPECT_FALSE(raw.ignoresMinusOne() || from_one.ignoresMinusOne());
+    EXPECT_TRUE(from_zero.ignoresMinusOne());
+  }
+}
+
+TEST(ClassTable, MinusOneIsIgnoredOrNothing)
+{
+  const std::string classes = "classes: [{name: road, kind: stuff, ids: [40], color: [1, 2, 3]}]";
+  EXPECT_TRUE(ClassTable::parse("minus_one: ignored\n" + classes, "my.yaml").ignoresMinusOne());
+  EXPECT_EQ(errorOf("minus_one: road\n" + classes), "my.yaml: minus_one must be 'ignored', or not there");
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -1,6 +1,8 @@
 #include "benchmark_fixture.h"
+#include "lidar_panoptic_clustering/pipeline/factory.h"
 #include "recorded_data.h"
 
+#include <algorithm>
 #include <utility>
 
 namespace lidar_panoptic_clustering
@@ -11,8 +13,8 @@ TEST_F(PanopticBenchmark, AllRowsOnAllSequences)
 {
   ASSERT_EQ(benchmark("--report r.json"), 0) << err();
   const auto r = report("r.json");
-  const std::vector<std::string> rows = {"euclidean", "supervoxel",    "supervoxel normal_weight=0.5",
-                                         "depth",     "scan_line_run", "birds_eye"};
+  std::vector<std::string> rows = algorithmNames();  // and for supervoxel a second row
+  rows.insert(std::find(rows.begin(), rows.end(), "supervoxel") + 1, "supervoxel normal_weight=0.5");
   EXPECT_EQ(r.at("rows").get<std::vector<std::string>>(), rows);
   for (const std::string& row : rows)
   {
@@ -42,6 +44,27 @@ TEST_F(PanopticBenchmark, SweepGivesARowAValue)
   const auto& merged = r.at("quality").at("rows").at("euclidean survey distance_m=3 min_points=1");
   EXPECT_EQ(merged.at("true_objects").at("merged"), 12);
   EXPECT_EQ(merged.at("pq_th_present"), 0.0);
+}
+
+TEST_F(PanopticBenchmark, TrackedIdsLastAndAreMeasured)
+{
+  ASSERT_EQ(benchmark("--algorithms euclidean --track --jobs 2 --output out --report r.json"), 0) << err();
+  const auto euclidean = report("r.json").at("quality").at("rows").at("euclidean");
+  EXPECT_EQ(euclidean.at("temporal").at("lstq"), 1.0);
+  EXPECT_EQ(euclidean.at("temporal").at("tubes_per_class").at("car"), 4);
+  EXPECT_EQ(euclidean.at("id_switches"), 0);
+  EXPECT_EQ(euclidean.at("pq_th_present"), 1.0);
+  EXPECT_NE(out().find("LSTQ"), std::string::npos) << out();
+  for (const std::string sequence : {"03", "08"})
+    for (std::uint32_t scan = 0; scan < 3; ++scan)
+    {
+      const Labels labels = readLabels(output("euclidean", sequence, scan));
+      EXPECT_EQ(labels.front(), 1U << 16U | kCar) << sequence << " " << scan;
+      EXPECT_EQ(labels.at(60), 2U << 16U | kCar) << sequence << " " << scan;
+    }
+  ASSERT_EQ(benchmark("--algorithms euclidean --track --output out --report again.json"), 0) << err();
+  EXPECT_EQ(quality("again.json"), quality("r.json"));
+  expectFailure("--track --shard 1/2", {"--track", "--shard"});
 }
 
 TEST_F(PanopticBenchmark, SwitchesGiveARowAStepAndReportsCompare)

@@ -37,6 +37,7 @@ struct BenchmarkSettings
   std::vector<std::string> sequences;  ///< "00", ..; none: all of the data set that have ground truth
   std::string semantics;               ///< folder of predicted classes; empty: the true ones
   std::string class_table = "semantic_kitti";
+  std::string label_table;  ///< of the predicted classes; empty: the class table
   std::vector<RowSettings> rows;
   std::string output;  ///< folder of the predictions; empty: none are written
   int jobs = 1;

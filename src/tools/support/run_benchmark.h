@@ -4,9 +4,11 @@
 #include "tools/support/benchmark_output.h"
 #include "tools/support/benchmark_scans.h"
 #include "tools/support/benchmark_settings.h"
+#include "tools/support/fingerprint.h"
 #include "tools/support/interrupt.h"
 #include "tools/support/label_tracker.h"
 #include "tools/support/progress.h"
+#include "tools/support/run_threads.h"
 #include "tools/support/scan_clusterer.h"
 
 #include <algorithm>
@@ -16,7 +18,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,7 +33,8 @@ public:
       : settings_(settings), table_(std::move(table)), scans_(settings_, table_), report_(emptyReport())
   {
     if (!settings_.output.empty())
-      for (const RowSettings& row : settings_.rows) outputs_.push_back(std::make_unique<RowOutput>(settings_, row));
+      for (const RowSettings& row : settings_.rows)
+        outputs_.push_back(std::make_unique<RowOutput>(settings_, row, *table_));
     times_.assign(settings_.rows.size(), std::vector<FrameTime>(scans_.size()));
     wrong_.assign(scans_.size(), 0);
     for (std::size_t i = 0; i < scans_.size(); ++i)
@@ -48,11 +50,7 @@ public:
     report_.before.skipped = scans_.skipped();
     {
       Progress progress("benchmark", scans_.size());
-      std::vector<std::thread> threads;
-      const std::size_t jobs = std::min(static_cast<std::size_t>(settings_.jobs), tasks_.size() - 1);
-      for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back([&] { work(progress); });
-      work(progress);
-      for (std::thread& thread : threads) thread.join();
+      runThreads(std::min(static_cast<std::size_t>(settings_.jobs), tasks_.size() - 1), [&] { work(progress); });
     }
     if (failure_) throw std::runtime_error(failure_->reason);
     for (std::size_t row = 0; row < report_.rows.size(); ++row)
@@ -158,6 +156,15 @@ private:
     return true;
   }
 
+  /// Of all that a prediction is made of but the settings.
+  static std::string fingerprintOf(const BenchmarkScan& scan)
+  {
+    Fingerprint fingerprint;
+    fingerprint.add(scan.points);
+    fingerprint.add(scan.classes);
+    return fingerprint.text();
+  }
+
   /// False, for whoever is to end.
   bool fail(std::size_t scan, const std::string& reason)
   {
@@ -171,12 +178,13 @@ private:
   void process(std::size_t i, Worker& worker)
   {
     scans_.read(i, worker.scan);
+    const std::string made_of = outputs_.empty() ? "" : fingerprintOf(worker.scan);
     std::vector<FrameTime> times(settings_.rows.size());
     std::vector<std::size_t> open;
     for (std::size_t row = 0; row < settings_.rows.size(); ++row)
       if (outputs_.empty() || settings_.track ||
-          !outputs_[row]->load(scans_.sequence(i), scans_.scanName(i), worker.scan.points.size(), worker.labels[row],
-                               times[row]))
+          !outputs_[row]->load(scans_.sequence(i), scans_.scanName(i), made_of, worker.scan.points.size(),
+                               worker.labels[row], times[row]))
         open.push_back(row);
     if (!open.empty()) worker.clusterer.project(worker.scan);
     for (const std::size_t row : open)
@@ -188,7 +196,7 @@ private:
     }
     if (!outputs_.empty())
       for (const std::size_t row : open)
-        outputs_[row]->save(scans_.sequence(i), scans_.scanName(i), worker.labels[row], times[row]);
+        outputs_[row]->save(scans_.sequence(i), scans_.scanName(i), made_of, worker.labels[row], times[row]);
     for (std::size_t row = 0; row < settings_.rows.size(); ++row) times_[row][i] = std::move(times[row]);
     if (!worker.scan.truth.empty()) evaluate(i, worker);
     ++used_;
