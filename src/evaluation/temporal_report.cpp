@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
 
+#include "evaluation/json_text.h"
+
 #include <cstdint>
 #include <limits>
 #include <nlohmann/json.hpp>
@@ -14,17 +16,10 @@ namespace
 using nlohmann::json;
 using Sequence = TemporalQuality::Sequence;
 
-const json& member(const json& object, const std::string& key)
-{
-  if (!object.is_object() || object.find(key) == object.end())
-    throw std::invalid_argument("key '" + key + "' is missing");
-  return object[key];
-}
-
 std::uint64_t number(const json& value, const std::string& what, std::uint64_t max)
 {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > max)
-    throw std::invalid_argument("key '" + what + "' holds " + value.dump() + ", expected a whole number");
+    throw std::invalid_argument("key '" + what + "' holds " + briefly(value) + ", expected a whole number");
   return value.get<std::uint64_t>();
 }
 
@@ -42,7 +37,7 @@ std::uint64_t points(const json& value, const std::string& what)
 const json& row(const json& value, const std::string& what, std::size_t size)
 {
   if (!value.is_array() || value.size() != size)
-    throw std::invalid_argument("key '" + what + "' holds " + value.dump() + ", expected rows of " +
+    throw std::invalid_argument("key '" + what + "' holds " + briefly(value) + ", expected rows of " +
                                 std::to_string(size) + " numbers");
   return value;
 }
@@ -68,18 +63,18 @@ ClassIndex thingNamed(const std::string& name, const ClassTable& table)
 Sequence sequenceFromJson(const json& object, const ClassTable& table)
 {
   Sequence tubes;
-  for (const json& value : member(object, "predicted"))
+  for (const json& value : jsonList(object, "predicted"))
   {
     const json& cells = row(value, "predicted", 2);
     tubes.predicted[id(cells[0], "predicted")] = points(cells[1], "predicted");
   }
-  for (const auto& [name, rows] : member(object, "truth").items())
+  for (const auto& [name, rows] : jsonMember(object, "truth").items())
     for (const json& value : rows)
     {
       const json& cells = row(value, "truth", 2);
       tubes.truth[{thingNamed(name, table), id(cells[0], "truth")}] = points(cells[1], "truth");
     }
-  for (const auto& [name, rows] : member(object, "shared").items())
+  for (const auto& [name, rows] : jsonMember(object, "shared").items())
     for (const json& value : rows)
     {
       const json& cells = row(value, "shared", 3);
@@ -132,19 +127,20 @@ json toJson(const TemporalQuality& quality)
 
 TemporalQuality temporalQualityFromJson(const json& object, std::shared_ptr<const ClassTable> table)
 {
-  const auto min_points = number(member(object, "min_points"), "min_points", std::numeric_limits<int>::max());
+  const auto min_points = number(jsonMember(object, "min_points"), "min_points", std::numeric_limits<int>::max());
   TemporalQuality::Counts counts;
-  counts.scans = number(member(object, "scans"), "scans", std::numeric_limits<std::uint64_t>::max());
+  counts.scans = number(jsonMember(object, "scans"), "scans", std::numeric_limits<std::uint64_t>::max());
   counts.classes.resize(table->size());
   for (std::size_t c = 0; c < table->size(); ++c)
   {
     const auto index = static_cast<ClassIndex>(c);
     if (!isCounted(index, *table)) continue;
-    const json& cells = row(member(member(object, "class_points"), nameOf(index, *table)), "class_points", 3);
+    const json& cells =
+        row(jsonMember(jsonMember(object, "class_points"), nameOf(index, *table).c_str()), "class_points", 3);
     counts.classes[c] = {points(cells[0], "class_points"), points(cells[1], "class_points"),
                          points(cells[2], "class_points")};
   }
-  for (const auto& [name, tubes] : member(object, "sequences").items())
+  for (const auto& [name, tubes] : jsonMember(object, "sequences").items())
     counts.sequences[name] = sequenceFromJson(tubes, *table);
   TemporalQuality quality(std::move(table), static_cast<int>(min_points));
   quality.restore(std::move(counts));

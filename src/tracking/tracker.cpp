@@ -72,18 +72,23 @@ bool Tracker::isAlive(std::uint32_t track) const
 
 const std::vector<TrackedObject>& Tracker::update(std::int64_t stamp_us, const Observations& observations)
 {
-  if (has_begun_ && seconds(last_us_ - stamp_us) > config_.max_missed_s) reset();
-  const bool is_new = !has_begun_ || stamp_us > last_us_;
-  if (is_new) dropLost(stamp_us);
-  expect(has_begun_ ? seconds(stamp_us - last_us_) : 0.0, observations.origin);
-  enterIntoGrid();
-  findCandidates(observations);
-  assign(observations);
+  match(stamp_us, observations);
   joinParts(observations);
+  const bool is_new = !has_begun_ || stamp_us > last_us_;
   if (is_new) learn(stamp_us, observations);
   giveIds(stamp_us, observations, is_new);
   if (is_new) last_us_ = stamp_us, has_begun_ = true;
   return objects_;
+}
+
+void Tracker::match(std::int64_t stamp_us, const Observations& observations)
+{
+  if (has_begun_ && seconds(last_us_ - stamp_us) > config_.max_missed_s) reset();
+  dropLost(stamp_us);
+  expect(has_begun_ ? seconds(stamp_us - last_us_) : 0.0, observations.origin);
+  enterIntoGrid();
+  findCandidates(observations);
+  assign(observations);
 }
 
 void Tracker::dropLost(std::int64_t stamp_us)

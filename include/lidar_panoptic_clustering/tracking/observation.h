@@ -31,6 +31,19 @@ struct Extent
       max[k] = along[k] > max[k] ? along[k] : max[k];
     }
   }
+  /// By how far a point lies outside along the axis where that is most; negative inside [m].
+  float distanceTo(float x, float y) const
+  {
+    constexpr float kHalfRoot = 0.70710678F;
+    const std::array<float, kAxes> along{x, y, kHalfRoot * (x + y), kHalfRoot * (x - y)};
+    float most = -kFar;
+    for (std::size_t k = 0; k < kAxes; ++k)
+    {
+      most = min[k] - along[k] > most ? min[k] - along[k] : most;
+      most = along[k] - max[k] > most ? along[k] - max[k] : most;
+    }
+    return most;
+  }
   void add(const Extent& other)
   {
     for (std::size_t k = 0; k < kAxes; ++k)

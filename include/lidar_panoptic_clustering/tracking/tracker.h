@@ -64,13 +64,23 @@ public:
   /// by more than max_missed_s starts anew, see reset().
   const std::vector<TrackedObject>& update(std::int64_t stamp_us, const Observations& observations);
 
+  /// A track that an observation holds together with others.
+  struct Share
+  {
+    std::uint32_t observation;  ///< its place
+    Extent outline;             ///< where the track should be, from Observations::origin
+  };
+  /// The tracks of observations that hold more than one: they lie within it, side by side, and nothing else is seen of
+  /// them. By observation; valid until the next call. Teaches nothing.
+  const std::vector<Share>& findMerged(std::int64_t stamp_us, const Observations& observations);
+
   /// Forgets all tracks (a jump in time, another sequence). Ids go on from the last one.
   void reset();
   /// Forgets all tracks and numbers from 1 again.
   void restart();
 
   std::size_t liveTracks() const { return tracks_.size(); }
-  /// Of the tracks that are alive, seen in this scan or not: their ids in rising order.
+  /// Whether the track may still be seen again. Logarithmic in the tracks.
   bool isAlive(std::uint32_t track) const;
 
 private:
@@ -96,6 +106,8 @@ private:
     float cost;
   };
 
+  void match(std::int64_t stamp_us, const Observations& observations);
+  bool isHeldBy(const Observation& observation, std::uint32_t track) const;
   void expect(double dt, const Eigen::Vector3d& origin);
   void enterIntoGrid();
   void findCandidates(const Observations& observations);
@@ -141,5 +153,6 @@ private:
   std::vector<bool> is_part_;               ///< by observation: of the track, which is seen in another one too
   std::vector<Observation> whole_;          ///< by track: what was seen of it, parts included
   std::vector<TrackedObject> objects_;
+  std::vector<Share> shares_;
 };
 }  // namespace lidar_panoptic_clustering
