@@ -138,8 +138,12 @@ ObjectErrorCounts objectErrorCountsFromJson(const json& object)
 
 EvaluationReport& EvaluationReport::operator+=(const EvaluationReport& other)
 {
+  if (temporal.has_value() != other.temporal.has_value() || id_switches.has_value() != other.id_switches.has_value())
+    throw std::invalid_argument("a report with temporal figures and one without cannot be added");
   quality += other.quality;
   objects += other.objects;
+  if (temporal) *temporal += *other.temporal;
+  if (id_switches) *id_switches += *other.id_switches;
   skipped.insert(skipped.end(), other.skipped.begin(), other.skipped.end());
   return *this;
 }
@@ -148,6 +152,8 @@ std::string EvaluationReport::toJsonText() const
 {
   json result = toJson(quality);
   result["true_objects"] = toJson(objects);
+  if (temporal) result["temporal"] = lidar_panoptic_clustering::toJson(*temporal);
+  if (id_switches) result["id_switches"] = *id_switches;
   result["skipped"] = json::array();
   std::vector<SkippedScan> sorted = skipped;
   std::sort(sorted.begin(), sorted.end(),
@@ -166,7 +172,10 @@ EvaluationReport EvaluationReport::fromJsonText(const std::string& report, const
   try
   {
     EvaluationReport result(table);
-    result.quality = panopticQualityFromJson(parsed, std::move(table));
+    result.quality = panopticQualityFromJson(parsed, table);
+    if (parsed.find("temporal") != parsed.end())
+      result.temporal = temporalQualityFromJson(parsed["temporal"], std::move(table));
+    if (parsed.find("id_switches") != parsed.end()) result.id_switches = jsonNumber(parsed, "id_switches");
     result.objects = objectErrorCountsFromJson(jsonMember(parsed, "true_objects"));
     for (const json& scan : jsonList(parsed, "skipped"))
       result.skipped.push_back({jsonText(scan, "scan"), jsonText(scan, "reason")});

@@ -95,6 +95,24 @@ std::vector<Column> qualityColumns(const BenchmarkReport& report)
   return columns;
 }
 
+/// None where nothing was tracked.
+std::vector<Column> temporalColumns(const BenchmarkReport& report)
+{
+  if (report.rows.empty() || !report.rows.front().evaluation.temporal) return {};
+  std::vector<Column> columns = {{"ids", "LSTQ", "%", 8, 1, {}},
+                                 {"", "assoc", "%", 7, 1, {}},
+                                 {"", "cls", "%", 6, 1, {}},
+                                 {"", "switches", "", 9, 0, {}}};
+  for (const BenchmarkRow& row : report.rows)
+  {
+    const TemporalFigures f = row.evaluation.temporal->figures();
+    const double switches = static_cast<double>(row.evaluation.id_switches.value_or(0));
+    const double values[] = {100 * f.lstq, 100 * f.s_assoc, 100 * f.s_cls, switches};
+    for (std::size_t c = 0; c < columns.size(); ++c) columns[c].values.push_back(values[c]);
+  }
+  return columns;
+}
+
 std::vector<Column> timeColumns(const BenchmarkReport& report)
 {
   std::vector<Column> columns = {
@@ -198,6 +216,8 @@ std::string formatBenchmark(const BenchmarkReport& report, std::size_t width)
 {
   const bool evaluated = report.before.quality.scanCount() > 0;
   std::vector<Column> quality = evaluated ? qualityColumns(report) : std::vector<Column>{};
+  if (evaluated)
+    for (Column& column : temporalColumns(report)) quality.push_back(std::move(column));
   std::vector<Column> time = timeColumns(report);
   if (evaluated && isWholeValidation(report))
     for (Column& column : publishedColumns(report)) time.push_back(std::move(column));

@@ -33,6 +33,21 @@ void appendClasses(const PanopticQuality& quality, ClassKind kind, std::string& 
            static_cast<unsigned long long>(counts.fp), static_cast<unsigned long long>(counts.fn));
   }
 }
+
+void appendTemporal(const EvaluationReport& report, std::string& out)
+{
+  const TemporalFigures f = report.temporal->figures();
+  append(out, "\nOver time: LSTQ %.1f, S_assoc %.1f, S_cls %.1f", 100 * f.lstq, 100 * f.s_assoc, 100 * f.s_cls);
+  if (report.id_switches) append(out, ", id switches %llu", static_cast<unsigned long long>(*report.id_switches));
+  append(out, "\n[%%]             S_assoc   tubes\n");
+  for (std::size_t c = 0; c < f.tubes.size(); ++c)
+  {
+    const ClassInfo& info = report.temporal->table()[static_cast<ClassIndex>(c)];
+    if (info.isThing())
+      append(out, "%-16.40s%7.1f %7llu\n", info.name.c_str(), 100 * f.association[c],
+             static_cast<unsigned long long>(f.tubes[c]));
+  }
+}
 }  // namespace
 
 std::string formatReport(const EvaluationReport& report)
@@ -55,8 +70,9 @@ std::string formatReport(const EvaluationReport& report)
          report.quality.minPoints(), static_cast<unsigned long long>(objects.total()),
          static_cast<unsigned long long>(objects.matched), static_cast<unsigned long long>(objects.split),
          static_cast<unsigned long long>(objects.merged), static_cast<unsigned long long>(objects.missed));
-  append(out, "Scans evaluated: %llu, skipped: %zu\n", static_cast<unsigned long long>(report.quality.scanCount()),
-         report.skipped.size());
+  if (report.temporal) appendTemporal(report, out);
+  append(out, "%sScans evaluated: %llu, skipped: %zu\n", report.temporal ? "\n" : "",
+         static_cast<unsigned long long>(report.quality.scanCount()), report.skipped.size());
   return out;
 }
 }  // namespace lidar_panoptic_clustering

@@ -45,6 +45,9 @@ Options describeOptions()
                         "sets parameter P of algorithm A; several values, or several parameters, give a row each");
   options.add_options()("switches",
                         "also each row with no step of the refinement, with each alone, and with all but each");
+  options.add_options()("track",
+                        "ids that stay with an object from scan to scan, by the data set's poses; adds LSTQ, S_assoc, "
+                        "S_cls and id switches to each row");
   options.add_options()("jobs", numberValue(1),
                         "threads, each on scans of its own; the quality does not depend on it, but times are best "
                         "taken with one");
@@ -100,6 +103,10 @@ BenchmarkSettings readSettings(const Given& given)
   settings.limit = numberOf(given, "limit", 0, 1 << 30);
   settings.columns = numberOf(given, "columns", 16, 16384);
   settings.keep_going = isGiven(given, "keep-going");
+  settings.track = isGiven(given, "track");
+  if (settings.track && settings.shards > 1)
+    throw std::invalid_argument("--track needs every scan of a sequence, --shard gives every " +
+                                std::to_string(settings.shards) + "th: divide by --sequences instead");
   return settings;
 }
 

@@ -34,6 +34,7 @@ Options describeOptions()
                         "YAML file, or the name of a table that ships with the package (semantic_kitti, which is the "
                         "default, or nuscenes)");
   options.add_options()("min-points", numberValue(50), "unmatched segments with fewer points do not count");
+  options.add_options()("temporal", "also LSTQ, S_assoc and S_cls: whether ids stay with an object from scan to scan");
   options.add_options()("jobs", numberValue(cores), "threads; the result does not depend on it");
   options.add_options()("keep-going", "skip scans that cannot be evaluated and count them in the report");
   options.add_options()("report", textValue("FILE.json"), "write the figures and all that is needed to merge them");
@@ -57,6 +58,7 @@ EvaluationReport evaluate(const Given& given)
   if (isGiven(given, "split")) set.sequences = semanticKittiSplit(textOf(given, "split"));
   set.min_points = given["min-points"].as<int>();
   set.jobs = given["jobs"].as<int>();
+  set.temporal = isGiven(given, "temporal");
   set.keep_going = isGiven(given, "keep-going");
   return evaluatePredictions(
       set, loadTable(isGiven(given, "class-table") ? textOf(given, "class-table") : "semantic_kitti"));

@@ -46,6 +46,27 @@ TEST_F(PanopticBenchmark, SweepGivesARowAValue)
   EXPECT_EQ(merged.at("pq_th_present"), 0.0);
 }
 
+TEST_F(PanopticBenchmark, TrackedIdsLastAndAreMeasured)
+{
+  ASSERT_EQ(benchmark("--algorithms euclidean --track --jobs 2 --output out --report r.json"), 0) << err();
+  const auto euclidean = report("r.json").at("quality").at("rows").at("euclidean");
+  EXPECT_EQ(euclidean.at("temporal").at("lstq"), 1.0);
+  EXPECT_EQ(euclidean.at("temporal").at("tubes_per_class").at("car"), 4);
+  EXPECT_EQ(euclidean.at("id_switches"), 0);
+  EXPECT_EQ(euclidean.at("pq_th_present"), 1.0);
+  EXPECT_NE(out().find("LSTQ"), std::string::npos) << out();
+  for (const std::string sequence : {"03", "08"})
+    for (std::uint32_t scan = 0; scan < 3; ++scan)
+    {
+      const Labels labels = readLabels(output("euclidean", sequence, scan));
+      EXPECT_EQ(labels.front(), 1U << 16U | kCar) << sequence << " " << scan;
+      EXPECT_EQ(labels.at(60), 2U << 16U | kCar) << sequence << " " << scan;
+    }
+  ASSERT_EQ(benchmark("--algorithms euclidean --track --output out --report again.json"), 0) << err();
+  EXPECT_EQ(quality("again.json"), quality("r.json"));
+  expectFailure("--track --shard 1/2", {"--track", "--shard"});
+}
+
 TEST_F(PanopticBenchmark, SwitchesGiveARowAStepAndReportsCompare)
 {
   const std::string row = "--algorithms depth --set depth.theta_deg=5 ";

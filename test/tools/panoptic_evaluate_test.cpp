@@ -229,6 +229,24 @@ TEST_F(PanopticEvaluate, KeepGoingSkipsAndCounts)
   EXPECT_NE(out().find("skipped: 3"), std::string::npos) << out();
 }
 
+TEST_F(PanopticEvaluate, TemporalFiguresAndTheirMerging)
+{
+  ASSERT_EQ(evaluate("--temporal --jobs 2 --report whole.json"), 0) << err();
+  const auto temporal = report("whole.json").at("temporal");
+  // a tube a scan of 60 points, of which 60, 50 and 40 are found
+  EXPECT_NEAR(temporal.at("s_assoc").get<double>(), (1.0 + 2500.0 / 3600 + 1600.0 / 3600) / 3, 1e-12);
+  // car 150 of 180, road 80 of 80 a sequence, and what is predicted to be ignored
+  EXPECT_NEAR(temporal.at("s_cls").get<double>(), (150.0 / 180 + 1.0 + 0.0) / 3, 1e-12);
+  EXPECT_NE(out().find("LSTQ 66.0, S_assoc 71.3, S_cls 61.1"), std::string::npos) << out();
+  ASSERT_EQ(evaluate("--temporal --sequences 03 --report a.json"), 0) << err();
+  ASSERT_EQ(evaluate("--temporal --sequences 08 --report b.json"), 0) << err();
+  ASSERT_EQ(run("--merge b.json a.json --report merged.json"), 0) << err();
+  EXPECT_EQ(read(folder_ / "merged.json"), read(folder_ / "whole.json"));
+  ASSERT_EQ(evaluate("--sequences 08 --report plain.json"), 0) << err();
+  EXPECT_EQ(run("--merge a.json plain.json"), 1);
+  EXPECT_NE(err().find("temporal"), std::string::npos) << err();
+}
+
 TEST_F(PanopticEvaluate, NothingEvaluatedIsAFailure)
 {
   for (std::uint32_t scan = 0; scan < 3; ++scan) write(prediction("08", scan), {});
@@ -264,8 +282,8 @@ TEST_F(PanopticEvaluate, UnwritableReportAndFullDisk)
 TEST_F(PanopticEvaluate, WrongOptions)
 {
   EXPECT_EQ(run("--help"), 0);
-  for (const std::string option : {"dataset", "predictions", "sequences", "split", "class-table", "min-points", "jobs",
-                                   "keep-going", "report", "merge"})
+  for (const std::string option : {"dataset", "predictions", "sequences", "split", "class-table", "min-points",
+                                   "temporal", "jobs", "keep-going", "report", "merge"})
     EXPECT_NE(out().find("--" + option), std::string::npos) << option;
   EXPECT_EQ(run(""), 1);
   EXPECT_NE(err().find("--dataset is missing"), std::string::npos) << err();

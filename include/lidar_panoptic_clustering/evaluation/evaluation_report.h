@@ -2,9 +2,11 @@
 
 #include "lidar_panoptic_clustering/evaluation/object_errors.h"
 #include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
+#include "lidar_panoptic_clustering/evaluation/temporal_quality.h"
 
 #include <memory>
 #include <nlohmann/json_fwd.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -22,6 +24,12 @@ nlohmann::json toJson(const ObjectErrorCounts& counts);
 /// Throws std::invalid_argument naming the key.
 ObjectErrorCounts objectErrorCountsFromJson(const nlohmann::json& json);
 
+/// The figures under the key names of SemanticKITTI's 4D evaluation (lstq, s_assoc, s_cls, assoc_per_class), and all
+/// tubes, so that temporalQualityFromJson gives the same object back.
+nlohmann::json toJson(const TemporalQuality& quality);
+/// Throws std::invalid_argument naming the key.
+TemporalQuality temporalQualityFromJson(const nlohmann::json& json, std::shared_ptr<const ClassTable> table);
+
 /// A scan that could not be evaluated.
 struct SkippedScan
 {
@@ -34,6 +42,8 @@ struct EvaluationReport
 {
   PanopticQuality quality;
   ObjectErrorCounts objects;
+  std::optional<TemporalQuality> temporal;   ///< where ids were followed from scan to scan
+  std::optional<std::uint64_t> id_switches;  ///< where scans came in their order, see IdSwitches
   std::vector<SkippedScan> skipped;
 
   explicit EvaluationReport(std::shared_ptr<const ClassTable> table, int min_points = 50)
@@ -41,7 +51,8 @@ struct EvaluationReport
   {
   }
 
-  /// Throws std::invalid_argument when the classes or min_points differ.
+  /// Throws std::invalid_argument when the classes or min_points differ, or one holds temporal figures and the other
+  /// none.
   EvaluationReport& operator+=(const EvaluationReport& other);
 
   /// The same counts give the same bytes, in whatever order they came together.

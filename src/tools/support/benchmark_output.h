@@ -112,6 +112,7 @@ private:
         "\nclass table: " + printable(settings.class_table, false) + ", content " + fingerprintOf(table) +
         describeLabelTable(settings.label_table) + "\ncolumns: " + std::to_string(settings.columns) +
         "\nalgorithm: " + row.algorithm + "\n";
+    if (settings.track) text += "tracked: true\n";
     const ParameterMap parameters = row.allParameters();
     for (const ParameterInfo& info : algorithmParameters(row.algorithm))
     {

@@ -54,6 +54,9 @@ public:
   const std::string& sequence(std::size_t i) const { return sequenceOf(i).name(); }
   /// The file name without its ending, "000123".
   const std::string& scanName(std::size_t i) const { return sequenceOf(i).scanName(places_[i].number); }
+  /// The sequence it belongs to, and its number there.
+  const SemanticKittiSequence& sequenceOf(std::size_t i) const { return sequences_[places_[i].sequence]; }
+  std::size_t numberOf(std::size_t i) const { return places_[i].number; }
   /// "08/000123"
   std::string name(std::size_t i) const { return sequence(i) + "/" + scanName(i); }
 
@@ -132,8 +135,6 @@ private:
   {
     return (std::filesystem::path(dataset_) / "sequences" / sequence(i) / "labels" / (scanName(i) + ".label")).string();
   }
-
-  const SemanticKittiSequence& sequenceOf(std::size_t i) const { return sequences_[places_[i].sequence]; }
 
   std::string dataset_, semantics_, label_table_;
   std::shared_ptr<const ClassTable> table_;

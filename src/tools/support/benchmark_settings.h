@@ -45,6 +45,7 @@ struct BenchmarkSettings
   int limit = 0;              ///< the first scans of each sequence; 0: all
   int columns = 2048;         ///< of the range image
   bool keep_going = false;    ///< skip and count scans that cannot be used
+  bool track = false;         ///< ids that stay with an object from scan to scan
 };
 
 /// `--set algorithm.parameter=value,value`

@@ -26,6 +26,7 @@ struct PredictionSet
   int min_points = 50;
   int jobs = 1;
   bool keep_going = false;  ///< skip and count scans that cannot be evaluated
+  bool temporal = false;    ///< ids from scan to scan too
 };
 
 /// Evaluates a folder of predictions against a data set. See evaluatePredictions.
@@ -36,6 +37,7 @@ public:
       : set_(std::move(set)), table_(std::move(table)), report_(table_, set_.min_points)
   {
     if (set_.jobs < 1) throw std::invalid_argument("jobs is " + std::to_string(set_.jobs) + ", expected 1 or more");
+    if (set_.temporal) report_.temporal.emplace(table_, set_.min_points);
     for (const std::string& name : sequenceNames()) addSequence(name);
     if (scans_.empty()) throw std::runtime_error("no scan with ground truth in " + set_.dataset);
   }
@@ -97,6 +99,7 @@ private:
   void work(Progress& progress)
   {
     EvaluationReport own(table_, set_.min_points);
+    if (set_.temporal) own.temporal.emplace(table_, set_.min_points);
     ObjectErrors errors(set_.min_points);
     Buffers buffers;
     while (!stop_)
@@ -108,6 +111,7 @@ private:
         read(scans_[i], buffers);
         own.quality.addScan(buffers.predicted.data(), buffers.truth.data(), buffers.truth.size());
         for (const TrueObject& object : errors.judge(own.quality.lastScan())) own.objects.add(object.outcome);
+        if (own.temporal) own.temporal->addScan(sequences_[scans_[i].sequence].name(), own.quality.lastScan());
       }
       catch (const std::exception& error)
       {

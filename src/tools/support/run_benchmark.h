@@ -6,6 +6,7 @@
 #include "tools/support/benchmark_settings.h"
 #include "tools/support/fingerprint.h"
 #include "tools/support/interrupt.h"
+#include "tools/support/label_tracker.h"
 #include "tools/support/progress.h"
 #include "tools/support/run_threads.h"
 #include "tools/support/scan_clusterer.h"
@@ -22,7 +23,8 @@
 
 namespace lidar_panoptic_clustering
 {
-/// Runs all rows on all scans: each scan is read and projected once, by one of `jobs` threads.
+/// Runs all rows on all scans: each scan is read and projected once, by one of `jobs` threads. When objects are
+/// tracked, a thread takes whole sequences, scan after scan.
 class BenchmarkRun
 {
 public:
@@ -35,6 +37,9 @@ public:
         outputs_.push_back(std::make_unique<RowOutput>(settings_, row, *table_));
     times_.assign(settings_.rows.size(), std::vector<FrameTime>(scans_.size()));
     wrong_.assign(scans_.size(), 0);
+    for (std::size_t i = 0; i < scans_.size(); ++i)
+      if (!settings_.track || i == 0 || scans_.sequence(i) != scans_.sequence(i - 1)) tasks_.push_back(i);
+    tasks_.push_back(scans_.size());
   }
 
   /// Ends early when the program is interrupted. Throws std::runtime_error naming the first file that is wrong, unless
@@ -45,7 +50,7 @@ public:
     report_.before.skipped = scans_.skipped();
     {
       Progress progress("benchmark", scans_.size());
-      runThreads(std::min(static_cast<std::size_t>(settings_.jobs), scans_.size()), [&] { work(progress); });
+      runThreads(std::min(static_cast<std::size_t>(settings_.jobs), tasks_.size() - 1), [&] { work(progress); });
     }
     if (failure_) throw std::runtime_error(failure_->reason);
     for (std::size_t row = 0; row < report_.rows.size(); ++row)
@@ -85,6 +90,8 @@ private:
     Worker(const BenchmarkSettings& settings, const std::shared_ptr<const ClassTable>& table, BenchmarkReport empty)
         : clusterer(settings, table), report(std::move(empty)), labels(settings.rows.size())
     {
+      for (std::size_t row = 0; row < settings.rows.size() && settings.track; ++row)
+        trackers.emplace_back(table), switches.emplace_back();
     }
 
     ScanClusterer clusterer;
@@ -93,23 +100,43 @@ private:
     BenchmarkScan scan;
     std::vector<std::vector<std::uint32_t>> labels;  ///< by row
     std::vector<std::uint32_t> no_instances, before;
+    std::vector<LabelTracker> trackers;  ///< by row, as are the next; none when nothing is tracked
+    std::vector<IdSwitches> switches;
   };
 
   BenchmarkReport emptyReport() const
   {
     std::vector<std::string> names;
     for (const RowSettings& row : settings_.rows) names.push_back(row.name);
-    return {settings_.semantics.empty() ? "ground truth" : settings_.semantics, names, table_};
+    BenchmarkReport report(settings_.semantics.empty() ? "ground truth" : settings_.semantics, names, table_);
+    for (BenchmarkRow& row : report.rows)
+      if (settings_.track) row.evaluation.temporal.emplace(table_), row.evaluation.id_switches = 0;
+    return report;
   }
 
   /// Scans are taken in order, so that the first bad one is reported however many threads there are.
   void work(Progress& progress)
   {
     Worker worker(settings_, table_, emptyReport());
-    while (!stop_ && interrupted() == 0)
+    while (true)
     {
-      const std::size_t i = next_++;
-      if (i >= scans_.size()) break;
+      const std::size_t task = next_++;
+      if (task + 1 >= tasks_.size() || !workOn(tasks_[task], tasks_[task + 1], worker, progress)) break;
+    }
+    for (std::size_t row = 0; row < worker.switches.size(); ++row)
+      worker.report.rows[row].evaluation.id_switches = worker.switches[row].count();
+    const std::lock_guard<std::mutex> lock(mutex_);
+    report_ += worker.report;
+  }
+
+  /// Whether to go on.
+  bool workOn(std::size_t begin, std::size_t end, Worker& worker, Progress& progress)
+  {
+    for (LabelTracker& tracker : worker.trackers) tracker.start(scans_.sequenceOf(begin));
+    for (IdSwitches& switches : worker.switches) switches.startSequence();
+    for (std::size_t i = begin; i < end; ++i)
+    {
+      if (stop_ || interrupted() != 0) return false;
       try
       {
         process(i, worker);
@@ -126,8 +153,7 @@ private:
       }
       progress.step();
     }
-    const std::lock_guard<std::mutex> lock(mutex_);
-    report_ += worker.report;
+    return true;
   }
 
   /// Of all that a prediction is made of but the settings.
@@ -139,11 +165,13 @@ private:
     return fingerprint.text();
   }
 
-  void fail(std::size_t scan, const std::string& reason)
+  /// False, for whoever is to end.
+  bool fail(std::size_t scan, const std::string& reason)
   {
     stop_ = true;
     const std::lock_guard<std::mutex> lock(mutex_);
     if (!failure_ || scan < failure_->scan) failure_ = Failure{scan, reason};
+    return false;
   }
 
   /// Counts nothing before all rows are through, so that a scan is in all of them or in none.
@@ -154,8 +182,9 @@ private:
     std::vector<FrameTime> times(settings_.rows.size());
     std::vector<std::size_t> open;
     for (std::size_t row = 0; row < settings_.rows.size(); ++row)
-      if (outputs_.empty() || !outputs_[row]->load(scans_.sequence(i), scans_.scanName(i), made_of,
-                                                   worker.scan.points.size(), worker.labels[row], times[row]))
+      if (outputs_.empty() || settings_.track ||
+          !outputs_[row]->load(scans_.sequence(i), scans_.scanName(i), made_of, worker.scan.points.size(),
+                               worker.labels[row], times[row]))
         open.push_back(row);
     if (!open.empty()) worker.clusterer.project(worker.scan);
     for (const std::size_t row : open)
@@ -163,6 +192,7 @@ private:
       PanopticCloud image;
       worker.clusterer.cluster(row, image, worker.labels[row], times[row]);
       times[row].scan = scans_.name(i);
+      if (settings_.track) track(row, i, worker);
     }
     if (!outputs_.empty())
       for (const std::size_t row : open)
@@ -170,6 +200,19 @@ private:
     for (std::size_t row = 0; row < settings_.rows.size(); ++row) times_[row][i] = std::move(times[row]);
     if (!worker.scan.truth.empty()) evaluate(i, worker);
     ++used_;
+  }
+
+  /// A scan whose ids do not fit is no reason to skip it: none after it would.
+  void track(std::size_t row, std::size_t i, Worker& worker) const
+  {
+    try
+    {
+      worker.trackers[row].track(scans_.numberOf(i), worker.scan.points, worker.labels[row]);
+    }
+    catch (const std::exception& error)
+    {
+      throw OutputError("sequence " + scans_.sequence(i) + ", row '" + settings_.rows[row].name + "': " + error.what());
+    }
   }
 
   void evaluate(std::size_t i, Worker& worker)
@@ -182,6 +225,11 @@ private:
     {
       EvaluationReport& evaluation = worker.report.rows[row].evaluation;
       evaluation.quality.addScan(worker.labels[row].data(), truth.data(), truth.size());
+      if (settings_.track)
+      {
+        evaluation.temporal->addScan(scans_.sequence(i), evaluation.quality.lastScan());
+        worker.switches[row].addScan(evaluation.quality.lastScan());
+      }
       for (const TrueObject& object : worker.errors.judge(evaluation.quality.lastScan()))
       {
         evaluation.objects.add(object.outcome);
@@ -198,6 +246,7 @@ private:
   std::vector<std::vector<FrameTime>> times_;        ///< by row and scan; unnamed where there is none
   std::vector<std::uint32_t> wrong_;                 ///< true objects split or merged, by scan
 
+  std::vector<std::size_t> tasks_;  ///< where the scans begin that are done in one go, and the end
   std::atomic<std::size_t> next_{0}, used_{0};
   std::atomic<bool> stop_{false};
   std::mutex mutex_;

@@ -1,0 +1,101 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/geometry/voxel_index.h"
+
+#include <Eigen/Geometry>
+#include <array>
+#include <cstdint>
+#include <limits>
+#include <memory>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// An object's extent in bird's-eye view along four axes 45 degrees apart: x, y, (x + y) / sqrt 2, (x - y) / sqrt 2.
+struct Extent
+{
+  static constexpr std::size_t kAxes = 4;
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+
+  std::array<float, kAxes> min{kFar, kFar, kFar, kFar};      ///< [m]
+  std::array<float, kAxes> max{-kFar, -kFar, -kFar, -kFar};  ///< [m]
+
+  void add(float x, float y)
+  {
+    constexpr float kHalfRoot = 0.70710678F;
+    const std::array<float, kAxes> along{x, y, kHalfRoot * (x + y), kHalfRoot * (x - y)};
+    for (std::size_t k = 0; k < kAxes; ++k)
+    {
+      min[k] = along[k] < min[k] ? along[k] : min[k];
+      max[k] = along[k] > max[k] ? along[k] : max[k];
+    }
+  }
+  /// By how far a point lies outside along the axis where that is most; negative inside [m].
+  float distanceTo(float x, float y) const
+  {
+    constexpr float kHalfRoot = 0.70710678F;
+    const std::array<float, kAxes> along{x, y, kHalfRoot * (x + y), kHalfRoot * (x - y)};
+    float most = -kFar;
+    for (std::size_t k = 0; k < kAxes; ++k)
+    {
+      most = min[k] - along[k] > most ? min[k] - along[k] : most;
+      most = along[k] - max[k] > most ? along[k] - max[k] : most;
+    }
+    return most;
+  }
+  void add(const Extent& other)
+  {
+    for (std::size_t k = 0; k < kAxes; ++k)
+    {
+      min[k] = other.min[k] < min[k] ? other.min[k] : min[k];
+      max[k] = other.max[k] > max[k] ? other.max[k] : max[k];
+    }
+  }
+};
+
+/// One instance of one scan, as the tracker sees it.
+struct Observation
+{
+  std::uint32_t instance = 0;              ///< its id in the scan
+  std::uint32_t point_count = 0;           ///< with coordinates
+  ClassIndex class_index = kUnknownClass;  ///< of most of its points; the lower index wins a tie
+  float class_share = 0.0F;                ///< of the points that are of that class
+  Extent extent;                           ///< in the axes of the fixed frame, from Observations::origin
+  float x = 0.0F, y = 0.0F;                ///< mean of its points, likewise
+  float min_z = 0.0F, max_z = 0.0F;        ///< likewise [m]
+};
+
+struct Observations
+{
+  Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the sensor in the fixed frame [m]
+  std::vector<Observation> list;                     ///< in order of each instance's first point
+};
+
+/// Gathers a scan's instances point by point; keeps its memory between scans.
+class ObservationBuilder
+{
+public:
+  /// Throws std::invalid_argument without a table.
+  explicit ObservationBuilder(std::shared_ptr<const ClassTable> table);
+
+  /// Begins a scan; `fixed_from_sensor`: where the sensor is in the fixed frame.
+  void begin(const Eigen::Isometry3d& fixed_from_sensor);
+  /// Adds a point of an instance (any id but 0), in the sensor frame [m]. Points without finite coordinates count for
+  /// nothing, but their instance is entered. Returns the instance's place in Observations::list.
+  std::uint32_t add(std::uint32_t instance, ClassIndex class_index, float x, float y, float z);
+  /// Valid until the next begin().
+  const Observations& finish();
+
+private:
+  std::uint32_t placeOf(std::uint32_t instance);
+
+  std::shared_ptr<const ClassTable> table_;
+  Eigen::Matrix3f rotation_;
+  Observations observations_;
+  VoxelIndex place_of_;
+  std::vector<std::uint32_t> votes_;  ///< by place and class
+  std::vector<Eigen::Vector2d> sum_;  ///< by place
+  std::uint32_t last_instance_ = 0, last_place_ = 0;
+};
+}  // namespace lidar_panoptic_clustering
