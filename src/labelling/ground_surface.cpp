@@ -256,6 +256,14 @@ void GroundSurface::flatten()
     distance_[cell] = cell % kBins == 0 ? 0.0F : kGrid.middle[cell % kBins];
 }
 
+float GroundSurface::heightOf(float x, float y, float z) const
+{
+  const float range = std::sqrt(x * x + y * y);
+  std::uint32_t inner = sectorOf(x, y) * kBins + kGrid.find(range);
+  inner -= range < distance_[inner] ? 1 : 0;
+  return plane_.heightOf(x, y, z) - ground_[inner] - rise_[inner] * (range - distance_[inner]);
+}
+
 /// On the line between the grounds of two cells; beyond the last one as there.
 void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns)
 {

@@ -81,12 +81,7 @@ void ScanLabeller::takeGeometry(OrganizedScan& scan, bool all)
   if (scan.layout == Layout::kMerged)
     throw std::invalid_argument("expected scan lines, as labels is 'none', found the points of several lidars merged");
   ground_.label(scan.image.cloud);
-  if (all)
-  {
-    separate_.resize(scan.image.cloud.size());
-    for (std::size_t i = 0; i < separate_.size(); ++i) separate_[i] = scan.image.cloud.points[i].label;
-    labelPixels(scan, separate_);
-  }
+  if (all) ground_.labelPoints(scan, scan.labels);
   mapIds(scan);
 }
 

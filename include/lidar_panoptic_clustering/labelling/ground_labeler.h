@@ -4,6 +4,7 @@
 #include "lidar_panoptic_clustering/core/thing_scan.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
+#include "lidar_panoptic_clustering/projection/organized_scan.h"
 
 #include <cstdint>
 #include <string>
@@ -58,6 +59,11 @@ public:
   /// Linear in the pixels.
   void label(LabelledCloud& cloud);
 
+  /// Labels the points of a scan whose image label() was given: those that a pixel shows as there, hidden ones by their
+  /// own height over the ground and, above it, as the nearest shown return above the ground within a person's link, which is
+  /// looked for in the 5 x 9 pixels around. Linear in the points.
+  void labelPoints(const OrganizedScan& scan, std::vector<std::uint32_t>& labels) const;
+
   /// Whether the last scan had ground: it has not where there are hardly any returns, or the sensor stands on its head
   /// and its driver did not turn the cloud round. Then nothing is labelled ground.
   bool foundGround() const { return found_ground_; }
@@ -73,6 +79,7 @@ private:
   ScanComponents components_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
-  std::vector<std::uint32_t> label_of_component_;
+  std::vector<std::uint32_t> label_of_component_, label_of_part_;
+  std::vector<std::uint8_t> holds_person_;
 };
 }  // namespace lidar_panoptic_clustering

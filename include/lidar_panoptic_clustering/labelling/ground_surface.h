@@ -44,6 +44,9 @@ public:
   /// Returns whether there is ground; without it, heights are those above the lowest return.
   bool measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<GroundedReturn>& returns);
 
+  /// Above the ground of the last scan [m].
+  float heightOf(float x, float y, float z) const;
+
   /// The plane under the sensor in the last scan.
   const SlopedPlane& plane() const { return plane_; }
 
