@@ -27,14 +27,15 @@ inline std::shared_ptr<const ClassTable> table()
   return loaded;
 }
 
-inline Scans simulatedScans(const SensorModel& model, std::size_t count)
+/// Every `step`-th scan of the street.
+inline Scans simulatedScans(const SensorModel& model, std::size_t count, std::size_t step = 10)
 {
   LidarSimulator simulator(model);
   Scans scans(count);
   PanopticCloud scan;
   for (std::size_t i = 0; i < count; ++i)
   {
-    simulator.scan(10 * i, scan);
+    simulator.scan(step * i, scan);
     scans[i] = LabelledCloud(scan.width, scan.height);
     for (std::size_t k = 0; k < scan.points.size(); ++k)
     {
@@ -121,6 +122,21 @@ inline Scans withThings(Scans scans, std::size_t count)
   return scans;
 }
 
+/// A frame that is not in the cache, into one that was touched before: what everything is measured against. With
+/// `fresh`, into new memory.
+inline void plainCopy(benchmark::State& state, const Scans& scans, bool fresh = false)
+{
+  auto out = std::make_unique<LabelledCloud>();
+  std::size_t i = 0;
+  for (auto _ : state)
+  {
+    if (fresh) out = std::make_unique<LabelledCloud>();
+    *out = scans[i++ % scans.size()];
+    benchmark::DoNotOptimize(out->points.data());
+    benchmark::ClobberMemory();
+  }
+}
+
 inline void setThings(benchmark::State& state, std::size_t found)
 {
   state.counters["things"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
@@ -165,5 +181,17 @@ template <class Body>
 void add(const std::string& name, const Body& body)
 {
   benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond);
+}
+
+/// The whole of main(): reads Google Benchmark's options, lets `add_all` add what there is to measure and keep the
+/// scans it needs in the object it returns, and runs it. Exit status 2 for an option nobody knows.
+template <class AddAll>
+int runBenchmarks(int argc, char** argv, AddAll add_all)
+{
+  benchmark::Initialize(&argc, argv);
+  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+  [[maybe_unused]] const auto kept = add_all();
+  benchmark::RunSpecifiedBenchmarks();
+  return 0;
 }
 }  // namespace lidar_panoptic_clustering

@@ -1,13 +1,9 @@
 // Time of the organizer on each layout, one thread, beside a plain copy of the labelled cloud it makes. Figures are
 // worth comparing within one run only.
+#include "benchmark_scans.h"
 #include "unordered_clouds.h"
 
 #include "lidar_panoptic_clustering/projection/original_cloud.h"
-
-#include <benchmark/benchmark.h>
-
-#include <string>
-#include <vector>
 
 namespace lidar_panoptic_clustering
 {
@@ -19,7 +15,7 @@ constexpr std::size_t kFrames = 10;  // together too large for the cache, as fra
 struct Frames
 {
   std::vector<RawMessage> messages;
-  std::vector<LabelledCloud> images;
+  Scans images;
 };
 
 /// Returns and missing returns in the order of the organised cloud.
@@ -57,19 +53,6 @@ Frames framesOf(const std::string& sensor, const std::string& layout)
   return frames;
 }
 
-void plainCopy(benchmark::State& state, const std::string& sensor)
-{
-  const Frames frames = framesOf(sensor, "rows_are_rings");
-  LabelledCloud out;
-  std::size_t i = 0;
-  for (auto _ : state)
-  {
-    out = frames.images[i++ % kFrames];
-    benchmark::DoNotOptimize(out.points.data());
-    benchmark::ClobberMemory();
-  }
-}
-
 void organize(benchmark::State& state, const std::string& sensor, const std::string& layout)
 {
   const Frames frames = framesOf(sensor, layout);
@@ -91,23 +74,25 @@ void addLabelsToOriginal(benchmark::State& state, const std::string& sensor)
   std::size_t i = 0;
   for (auto _ : state) addLabels(frames.messages[i++ % kFrames].view(), ids, ids, out);
 }
+
+bool addAll()
+{
+  for (const std::string sensor : {"vlp16", "hdl64e", "os1_128"})
+  {
+    add(sensor + "/plain_copy",
+        [sensor](benchmark::State& state) { plainCopy(state, framesOf(sensor, "rows_are_rings").images); });
+    for (const std::string layout :
+         {"rows_are_rings", "rows_are_firings", "merged", "ring", "ring_shuffled", "beams", "unfold"})
+      add(sensor + "/" + layout, [sensor, layout](benchmark::State& state) { organize(state, sensor, layout); });
+    add(sensor + "/add_labels", [sensor](benchmark::State& state) { addLabelsToOriginal(state, sensor); });
+  }
+  return true;
+}
 }  // namespace
 }  // namespace lidar_panoptic_clustering
 
 int main(int argc, char** argv)
 {
   using namespace lidar_panoptic_clustering;
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  for (const std::string sensor : {"vlp16", "hdl64e", "os1_128"})
-  {
-    const auto add = [&sensor](const std::string& name, const auto& body)
-    { benchmark::RegisterBenchmark((sensor + "/" + name).c_str(), body)->Unit(benchmark::kMillisecond); };
-    add("plain_copy", [sensor](benchmark::State& state) { plainCopy(state, sensor); });
-    for (const std::string layout :
-         {"rows_are_rings", "rows_are_firings", "merged", "ring", "ring_shuffled", "beams", "unfold"})
-      add(layout, [sensor, layout](benchmark::State& state) { organize(state, sensor, layout); });
-    add("add_labels", [sensor](benchmark::State& state) { addLabelsToOriginal(state, sensor); });
-  }
-  benchmark::RunSpecifiedBenchmarks();
+  return runBenchmarks(argc, argv, addAll);
 }

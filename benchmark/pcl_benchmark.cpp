@@ -82,19 +82,24 @@ void supervoxelStraight(benchmark::State& state, const Scans& scans)
   }
   state.counters["pixels"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
 }
+
+std::unique_ptr<const Scans> addAll()
+{
+  const Scans recorded = recordedScans();
+  auto kept =
+      std::make_unique<const Scans>(recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded);
+  const Scans& scans = *kept;
+  add("euclidean/pcl_straight", [&scans](benchmark::State& state) { euclideanStraight(state, scans); });
+  add("euclidean/ours", [&scans](benchmark::State& state) { cluster(state, scans, "euclidean"); });
+  add("supervoxel/pcl_straight", [&scans](benchmark::State& state) { supervoxelStraight(state, scans); });
+  add("supervoxel/ours", [&scans](benchmark::State& state) { cluster(state, scans, "supervoxel"); });
+  return kept;
+}
 }  // namespace
 }  // namespace lidar_panoptic_clustering
 
 int main(int argc, char** argv)
 {
   using namespace lidar_panoptic_clustering;
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  const Scans recorded = recordedScans();
-  const Scans scans = recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded;
-  add("euclidean/pcl_straight", [&scans](benchmark::State& state) { euclideanStraight(state, scans); });
-  add("euclidean/ours", [&scans](benchmark::State& state) { cluster(state, scans, "euclidean"); });
-  add("supervoxel/pcl_straight", [&scans](benchmark::State& state) { supervoxelStraight(state, scans); });
-  add("supervoxel/ours", [&scans](benchmark::State& state) { cluster(state, scans, "supervoxel"); });
-  benchmark::RunSpecifiedBenchmarks();
+  return runBenchmarks(argc, argv, addAll);
 }

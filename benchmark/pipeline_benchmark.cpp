@@ -11,21 +11,6 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-/// A frame that is not in the cache, into one that was touched before: what the pipeline is measured against. With
-/// `fresh`, into new memory.
-void plainCopy(benchmark::State& state, const Scans& scans, bool fresh)
-{
-  auto out = std::make_unique<LabelledCloud>();
-  std::size_t i = 0;
-  for (auto _ : state)
-  {
-    if (fresh) out = std::make_unique<LabelledCloud>();
-    *out = scans[i++ % scans.size()];
-    benchmark::DoNotOptimize(out->points.data());
-    benchmark::ClobberMemory();
-  }
-}
-
 void select(benchmark::State& state, const Scans& scans)
 {
   ThingScan things;
@@ -61,29 +46,39 @@ void addSizes(const std::string& source, const Scans& scans)
     add(source + "/pipeline/" + name, [&scans, name](benchmark::State& state) { pipeline(state, scans, name); });
   }
 }
+
+struct Kept
+{
+  Scans simulated, recorded, ten_thousand, all_things, dense, dense_things;
+};
+
+std::unique_ptr<Kept> addAll()
+{
+  auto kept = std::make_unique<Kept>();
+  kept->simulated = simulatedScans(SensorModel::load("hdl64e"), 10), kept->recorded = recordedScans();
+  addWholeScans("simulated", kept->simulated);
+  addWholeScans("recorded", kept->recorded);
+
+  const Scans& usual = kept->recorded.empty() ? kept->simulated : kept->recorded;
+  const Scans& ten_thousand = kept->ten_thousand = withThings(usual, 10000);
+  if (!ten_thousand.empty())
+    for (const auto& name : algorithmNames())
+      add("ten_thousand/cluster/" + name,
+          [&ten_thousand, name](benchmark::State& state) { cluster(state, ten_thousand, name); });
+
+  kept->all_things = allThings(usual);
+  kept->dense = simulatedScans(hdl128e(), 4), kept->dense_things = allThings(kept->dense);
+  addSizes("all_things", kept->all_things);
+  addSizes("128_rings", kept->dense);
+  addSizes("128_rings_all_things", kept->dense_things);
+  return kept;
+}
 }  // namespace
 }  // namespace lidar_panoptic_clustering
 
 int main(int argc, char** argv)
 {
   using namespace lidar_panoptic_clustering;
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
   mallopt(M_MMAP_THRESHOLD, 1 << 20);  // else the C library learns to keep a freed frame, and new memory is not new
-  const Scans simulated = simulatedScans(SensorModel::load("hdl64e"), 10), recorded = recordedScans();
-  addWholeScans("simulated", simulated);
-  addWholeScans("recorded", recorded);
-
-  const Scans ten_thousand = withThings(recorded.empty() ? simulated : recorded, 10000);
-  if (!ten_thousand.empty())
-    for (const auto& name : algorithmNames())
-      add("ten_thousand/cluster/" + name,
-          [&ten_thousand, name](benchmark::State& state) { cluster(state, ten_thousand, name); });
-
-  const Scans all_things = allThings(recorded.empty() ? simulated : recorded);
-  const Scans dense = simulatedScans(hdl128e(), 4), dense_things = allThings(dense);
-  addSizes("all_things", all_things);
-  addSizes("128_rings", dense);
-  addSizes("128_rings_all_things", dense_things);
-  benchmark::RunSpecifiedBenchmarks();
+  return runBenchmarks(argc, argv, addAll);
 }

@@ -2,22 +2,33 @@
 #include "benchmark_scans.h"
 #include "worst_scans.h"
 
-int main(int argc, char** argv)
+namespace lidar_panoptic_clustering
 {
-  using namespace lidar_panoptic_clustering;
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
+namespace
+{
+using Builds = std::vector<std::pair<std::string, Scans>>;
+
+std::unique_ptr<Builds> addAll()
+{
+  auto builds = std::make_unique<Builds>();
   const Scans recorded = recordedScans();
-  std::vector<std::pair<std::string, Scans>> builds;
-  builds.emplace_back("usual",
-                      allThings(recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded));
-  for (const auto& worst : worstScans()) builds.emplace_back(worst.name, Scans{worst.build(64, 2048)});
+  builds->emplace_back("usual",
+                       allThings(recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded));
+  for (const auto& worst : worstScans()) builds->emplace_back(worst.name, Scans{worst.build(64, 2048)});
   for (const std::string name : {"depth", "scan_line_run", "birds_eye"})
-    for (const auto& [build, scans] : builds)
+    for (const auto& [build, scans] : *builds)
     {
       const Scans& each = scans;
       add("cluster/" + name + "/" + build, [&each, name](benchmark::State& state) { cluster(state, each, name); });
       add("pipeline/" + name + "/" + build, [&each, name](benchmark::State& state) { pipeline(state, each, name); });
     }
-  benchmark::RunSpecifiedBenchmarks();
+  return builds;
+}
+}  // namespace
+}  // namespace lidar_panoptic_clustering
+
+int main(int argc, char** argv)
+{
+  using namespace lidar_panoptic_clustering;
+  return runBenchmarks(argc, argv, addAll);
 }

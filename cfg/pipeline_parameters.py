@@ -1,4 +1,4 @@
-"""What every clustering nodelet can be tuned by, whatever its algorithm (PipelineConfig in core/frame_pipeline.h)."""
+"""What every clustering nodelet can be tuned by, whatever its algorithm (PipelineConfig in pipeline/frame_pipeline.h)."""
 from dynamic_reconfigure.parameter_generator_catkin import ParameterGenerator, bool_t, double_t, int_t, str_t
 
 PACKAGE = "lidar_panoptic_clustering"

@@ -1,6 +1,8 @@
 #include "bags/sequence_bag.h"
 
 #include "bags/point_message.h"
+#include "core/aside_file.h"
+#include "core/plain_numbers.h"
 #include "ros/pose_message.h"
 
 #include "lidar_panoptic_clustering/core/class_table.h"
@@ -35,17 +37,22 @@ rosbag::CompressionType compressionOf(const std::string& name)
 class AsideBag
 {
 public:
-  AsideBag(const std::string& path, rosbag::CompressionType compression) : path_(path), aside_(path + ".part")
+  AsideBag(const std::string& path, rosbag::CompressionType compression) : path_(path)
   {
     const auto status = std::filesystem::status(path);
     if (std::filesystem::exists(status) && !std::filesystem::is_regular_file(status))
       throw std::runtime_error("cannot write " + path + ": expected a regular file or none");
-    attempt(
-        [&]
-        {
-          bag_->setCompression(compression);
-          bag_->open(aside_, rosbag::bagmode::Write);
-        });
+    aside_ = makeAside(path);
+    try
+    {
+      bag_->setCompression(compression);
+      bag_->open(aside_, rosbag::bagmode::Write);
+    }
+    catch (const std::exception& error)
+    {
+      std::filesystem::remove(aside_);
+      throw std::runtime_error("cannot write " + path_ + ": " + error.what());
+    }
   }
   ~AsideBag()
   {
@@ -124,7 +131,7 @@ public:
     if (config.frame_id.empty() || config.frame_id.front() == '/')
       throw std::invalid_argument("frame id: expected a name without a leading slash, found '" + config.frame_id + "'");
     if (!(config.start_s >= 1.0 && config.start_s <= 4e9))
-      throw std::invalid_argument("start: expected 1 to 4e9 seconds, found " + std::to_string(config.start_s));
+      throw std::invalid_argument("start: expected 1 to 4e9 seconds, found " + shortText(config.start_s));
     if (config.first >= sequence_.size())
       throw std::invalid_argument("first: expected one of the scans 0 to " + std::to_string(sequence_.size() - 1) +
                                   " of sequence " + sequence_.name() + ", found " + std::to_string(config.first));

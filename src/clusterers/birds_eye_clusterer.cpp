@@ -15,6 +15,7 @@ constexpr std::uint32_t kAbsent = 0xFFFFFFFF;
 BirdsEyeClusterer::BirdsEyeClusterer(const BirdsEyeConfig& config) : config_(config)
 {
   validateParameters(config);
+  requireOffOrDistance("distance_m", config.distance_m, 10.0);
 }
 
 void BirdsEyeClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)

@@ -17,6 +17,7 @@ constexpr double kRadiansPerDegree = 3.14159265358979323846 / 180.0;
 DepthClusterer::DepthClusterer(const DepthConfig& config)
 {
   validateParameters(config);
+  requireOffOrDistance("max_distance_m", config.max_distance_m, 100.0);
   const double tan_theta = std::tan(config.theta_deg * kRadiansPerDegree);
   squared_tan_theta_ = static_cast<float>(tan_theta * tan_theta);
   max_squared_distance_ = config.max_distance_m > 0.0

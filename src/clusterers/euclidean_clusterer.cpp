@@ -17,6 +17,7 @@ using Cloud = pcl::PointCloud<pcl::PointXYZ>;
 EuclideanClusterer::EuclideanClusterer(const EuclideanConfig& config) : config_(config)
 {
   validateParameters(config);
+  requireOffOrDistance("distance_m", config.distance_m, 10.0);
 }
 
 Cloud::Ptr EuclideanClusterer::representatives(const ThingScan& scan, std::size_t group)

@@ -70,6 +70,20 @@ void SupervoxelClusterer::cluster(const ThingScan& scan, std::vector<std::uint32
   std::uint32_t objects = 0;
   for (std::size_t group = 0; group < groups_.count(); ++group)
     if (groups_.size(group) > 0) objects = clusterGroup(scan, group, objects, component);
+  numberUsed(objects, component);
+}
+
+/// PCL keeps supervoxels that lost all their voxels to others: those left are numbered 0, 1, 2 ..
+void SupervoxelClusterer::numberUsed(std::uint32_t objects, std::vector<std::uint32_t>& component)
+{
+  number_of_object_.assign(objects, kNone);
+  std::uint32_t used = 0;
+  for (std::uint32_t& object : component)
+  {
+    std::uint32_t& number = number_of_object_[object];
+    if (number == kNone) number = used++;
+    object = number;
+  }
 }
 
 std::uint32_t SupervoxelClusterer::clusterGroup(const ThingScan& scan, std::size_t group, std::uint32_t first_object,

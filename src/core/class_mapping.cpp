@@ -18,6 +18,7 @@ ClassIndex counterpart(const ClassInfo& info, const ClassTable& to)
   if (found != kUnknownClass) return found;
   return to.findByName(info.isThing() ? "object" : "structure");
 }
+}  // namespace
 
 std::uint32_t ignoredId(const ClassTable& table)
 {
@@ -28,7 +29,6 @@ std::uint32_t ignoredId(const ClassTable& table)
   }
   return ClassMapping::kUnmapped;
 }
-}  // namespace
 
 ClassMapping::ClassMapping(const ClassTable& from, const ClassTable& to)
 {

@@ -1,11 +1,13 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 
+#include "core/plain_numbers.h"
 #include "core/yaml_source.h"
 #include "shipped_files.h"
 
 #include <yaml-cpp/yaml.h>
 
 #include <algorithm>
+#include <cstdint>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -13,7 +15,7 @@ namespace lidar_panoptic_clustering
 namespace
 {
 // SemanticKITTI keeps the class in the low 16 bits of a label; no convention known has larger ids.
-constexpr std::uint32_t kMaxRawId = 0xFFFF;
+constexpr std::int64_t kMaxRawId = 0xFFFF;
 constexpr std::size_t kMaxClasses = 255;
 
 /// Reads one entry of `classes`; `where` ("FILE: class 'car'") begins each message.
@@ -25,42 +27,66 @@ public:
   ClassInfo read(std::string& group) const
   {
     ClassInfo info;
-    info.name = node_["name"].as<std::string>();
+    info.name = required<std::string>("name", "a name");
     info.kind = readKind();
-    info.ids = required<std::vector<std::uint32_t>>("ids", "a list of raw ids");
-    if (info.ids.empty()) fail("ids is empty, expected at least one raw id");
-    const auto color = required<std::vector<int>>("color", "[red, green, blue]");
-    if (color.size() != 3 || std::any_of(color.begin(), color.end(), [](int c) { return c < 0 || c > 255; }))
-      fail("color must be [red, green, blue], each from 0 to 255");
+    info.ids = readIds();
+    info.rgb = readColor();
     if (node_["aliases"]) info.aliases = required<std::vector<std::string>>("aliases", "a list of class names");
-    info.rgb = static_cast<std::uint32_t>(color[0] << 16 | color[1] << 8 | color[2]);
     if (!info.isThing()) return info;
 
-    group = node_["group"] ? node_["group"].as<std::string>() : info.name;
+    group = node_["group"] ? required<std::string>("group", "a name") : info.name;
     const auto size = required<std::vector<float>>("size", "[length, width] in metres");
     if (size.size() != 2 || !(size[1] > 0.0F) || !(size[0] >= size[1]))
       fail("size must be [length, width] in metres with length >= width > 0");
-    info.length_m = size[0], info.width_m = size[1];
-    info.link_distance_m = required<float>("link", "a distance in metres");
-    if (!(info.link_distance_m > 0.0F)) fail("link must be above 0 m");
+    info.length_m = inRange("length", size[0], kLeastSize, kMostSize);
+    info.width_m = inRange("width", size[1], kLeastSize, kMostSize);
+    info.link_distance_m = inRange("link", required<float>("link", "a distance in metres"), kLeastLink, kMostLink);
     return info;
   }
 
 private:
+  // [m]: with these, and whatever parameters scale them, the algorithms' grids hold every scan
+  static constexpr float kLeastSize = 0.01F, kMostSize = 1000.0F, kLeastLink = 0.05F, kMostLink = 100.0F;
+
   [[noreturn]] void fail(const std::string& what) const { throw std::invalid_argument(where_ + ": " + what); }
 
   template <class T>
   T required(const char* key, const char* expected) const
   {
     if (!node_[key]) fail(std::string("has no '") + key + "', expected " + expected);
-    try
+    T value{};
+    if (!readYaml(node_[key], value)) fail(std::string("'") + key + "' must be " + expected);
+    return value;
+  }
+
+  float inRange(const char* what, float metres, float least, float most) const
+  {
+    if (!(metres >= least && metres <= most))
+      fail(std::string(what) + " must be from " + shortText(least) + " to " + shortText(most) + " m, found " +
+           shortText(metres));
+    return metres;
+  }
+
+  std::vector<std::uint32_t> readIds() const
+  {
+    std::vector<std::uint32_t> ids;
+    for (const std::int64_t id : required<std::vector<std::int64_t>>("ids", "a list of raw ids"))
     {
-      return node_[key].as<T>();
+      if (id < 0) fail("id " + std::to_string(id) + " is below 0");
+      if (id > kMaxRawId) fail("id " + std::to_string(id) + " is above 65535");
+      if (std::find(ids.begin(), ids.end(), id) != ids.end()) fail("id " + std::to_string(id) + " is there twice");
+      ids.push_back(static_cast<std::uint32_t>(id));
     }
-    catch (const YAML::Exception&)
-    {
-      fail(std::string("'") + key + "' must be " + expected);
-    }
+    if (ids.empty()) fail("ids is empty, expected at least one raw id");
+    return ids;
+  }
+
+  std::uint32_t readColor() const
+  {
+    const auto color = required<std::vector<std::int64_t>>("color", "[red, green, blue]");
+    if (color.size() != 3 || std::any_of(color.begin(), color.end(), [](std::int64_t c) { return c < 0 || c > 255; }))
+      fail("color must be [red, green, blue], each from 0 to 255");
+    return static_cast<std::uint32_t>(color[0] << 16 | color[1] << 8 | color[2]);
   }
 
   ClassKind readKind() const
@@ -86,6 +112,12 @@ try
 
   ClassTable table;
   table.name_ = root["name"] ? root["name"].as<std::string>() : source;
+  if (root["minus_one"])
+  {
+    if (!root["minus_one"].IsScalar() || root["minus_one"].Scalar() != "ignored")
+      throw std::invalid_argument(source + ": minus_one must be 'ignored', or not there");
+    table.ignores_minus_one_ = true;
+  }
   table.classes_.push_back({"unknown", ClassKind::kIgnored, {}, 0x808080, 0, 0.0F, 0.0F, 0.0F, {}});
   table.groups_.push_back("");
 
@@ -102,7 +134,6 @@ try
     const auto index = static_cast<ClassIndex>(table.size());
     for (const std::uint32_t id : info.ids)
     {
-      if (id > kMaxRawId) throw std::invalid_argument(where + ": id " + std::to_string(id) + " is above 65535");
       if (table.find(id) != kUnknownClass)
         throw std::invalid_argument(where + ": id " + std::to_string(id) + " already belongs to class '" +
                                     table[table.find(id)].name + "'");

@@ -1,39 +1,40 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 
+#include "core/plain_numbers.h"
+#include "core/printable.h"
+
 #include <algorithm>
 #include <cmath>
-#include <sstream>
 #include <stdexcept>
 
-namespace lidar_panoptic_clustering::detail
+namespace lidar_panoptic_clustering
+{
+std::string parameterText(const ParameterValue& value)
+{
+  if (const auto* held = std::get_if<bool>(&value)) return *held ? "true" : "false";
+  if (const auto* held = std::get_if<int>(&value)) return std::to_string(*held);
+  if (const auto* held = std::get_if<double>(&value)) return shortText(*held, 15);
+  return std::get<std::string>(value);
+}
+
+namespace detail
 {
 namespace
 {
-std::string printed(const ParameterValue& value)
+std::string quoted(const ParameterValue& value)
 {
-  std::ostringstream text;
-  std::visit(
-      [&text](const auto& held)
-      {
-        if constexpr (std::is_same_v<std::decay_t<decltype(held)>, std::string>)
-          text << '\'' << held << '\'';
-        else
-          text << std::boolalpha << held;
-      },
-      value);
-  return text.str();
+  const std::string text = printable(parameterText(value), false);
+  return std::holds_alternative<std::string>(value) ? "'" + text + "'" : text;
 }
 
 [[noreturn]] void fail(const std::string& name, const std::string& expected, const ParameterValue& value)
 {
-  throw std::invalid_argument("parameter '" + name + "': expected " + expected + ", got " + printed(value));
+  throw std::invalid_argument("parameter '" + name + "': expected " + expected + ", got " + quoted(value));
 }
 
 std::string range(double min, double max)
 {
-  std::ostringstream text;
-  text << "from " << min << " to " << max;
-  return text.str();
+  return "from " + shortText(min) + " to " + shortText(max);
 }
 
 /// NaN where the value is no number; text that is a number as a whole counts, as command lines give it.
@@ -41,12 +42,7 @@ double numberIn(const ParameterValue& value)
 {
   if (const auto* held = std::get_if<double>(&value)) return *held;
   if (const auto* held = std::get_if<int>(&value)) return *held;
-  if (const auto* held = std::get_if<std::string>(&value))
-  {
-    std::istringstream text(*held);
-    double number = 0.0;
-    if (text >> number && text.eof()) return number;
-  }
+  if (const auto* held = std::get_if<std::string>(&value)) return parseNumber(*held).value_or(std::nan(""));
   return std::nan("");
 }
 }  // namespace
@@ -93,4 +89,11 @@ void throwUnknown(const std::string& name, const std::vector<ParameterInfo>& kno
   for (const auto& info : known) list += (list.empty() ? "" : ", ") + info.name;
   throw std::invalid_argument("there is no parameter '" + name + "'; there are: " + list);
 }
-}  // namespace lidar_panoptic_clustering::detail
+}  // namespace detail
+
+void requireOffOrDistance(const std::string& name, double metres, double max)
+{
+  if (metres != 0.0 && !(metres >= kLeastDistanceM && metres <= max))
+    detail::fail(name, "0 or a number " + detail::range(kLeastDistanceM, max), metres);
+}
+}  // namespace lidar_panoptic_clustering

@@ -1,10 +1,8 @@
+#include "core/aside_file.h"
 #include "datasets/binary_file.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
 #include <array>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
 #include <filesystem>
 #include <stdexcept>
 
@@ -14,22 +12,6 @@ namespace fs = std::filesystem;
 namespace
 {
 constexpr std::uint32_t kMaxInstance = 0xFFFFU;
-
-[[noreturn]] void throwNotWritten(const std::string& path, int error)
-{
-  throw std::runtime_error("cannot write " + path + ": " + std::strerror(error));
-}
-
-/// Returns 0, or the error.
-int writeAll(const std::string& path, const std::vector<std::uint32_t>& labels)
-{
-  std::FILE* file = std::fopen(path.c_str(), "wb");
-  if (file == nullptr) return errno;
-  std::setvbuf(file, nullptr, _IONBF, 0);
-  const bool written = std::fwrite(labels.data(), sizeof(std::uint32_t), labels.size(), file) == labels.size();
-  const int error = written ? 0 : errno;
-  return std::fclose(file) == 0 || error != 0 ? error : errno;  // a network's file system reports a full disk here
-}
 }  // namespace
 
 void readLabelFile(const std::string& path, std::vector<std::uint32_t>& labels)
@@ -41,12 +23,9 @@ void writeLabelFile(const std::string& path, const std::vector<std::uint32_t>& l
 {
   std::error_code ignored;
   fs::create_directories(fs::path(path).parent_path(), ignored);  // what went wrong shows when the file is opened
-  const std::string aside = path + ".part";
-  int error = writeAll(aside, labels);
-  if (error == 0 && std::rename(aside.c_str(), path.c_str()) != 0) error = errno;
-  if (error == 0) return;
-  fs::remove(aside, ignored);
-  throwNotWritten(path, error);
+  AsideFile file(path);
+  file.write(labels.data(), labels.size() * sizeof(std::uint32_t));
+  file.save();
 }
 
 void encodeLabels(const std::vector<std::uint32_t>& classes, const std::vector<std::uint32_t>& instances,

@@ -1,11 +1,14 @@
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
+#include "core/input_file.h"
+#include "core/plain_numbers.h"
+#include "core/printable.h"
 #include "datasets/binary_file.h"
 
 #include <algorithm>
 #include <charconv>
+#include <cmath>
 #include <filesystem>
-#include <fstream>
 #include <iterator>
 #include <optional>
 #include <sstream>
@@ -21,13 +24,37 @@ void requireFolder(const fs::path& folder)
   if (!fs::is_directory(folder)) throw std::runtime_error("no such folder: " + folder.string());
 }
 
+constexpr std::size_t kMostShown = 300;                          // of a wrong line
+constexpr std::uint64_t kMaxTextFile = std::uint64_t{1} << 28U;  // a pose takes 150 bytes
+
+/// Folders stay below the data set's, and the outputs' below theirs.
+void requireSequenceName(const std::string& name)
+{
+  if (name.empty() || name == "." || name == ".." || name.find('/') != std::string::npos ||
+      name.find('\0') != std::string::npos)
+    throw std::invalid_argument("sequence '" + printable(name, false) +
+                                "': expected the name of one folder below 'sequences', as 08");
+}
+
+/// Metres and seconds far beyond any drive's; more would run over in stamps.
+constexpr double kLargestNumber = 1e9;
+
 /// Numbers of one line; throws naming file and line when there are not `count`.
 std::vector<double> parseNumbers(const std::string& line, std::size_t count, const std::string& where)
 {
   std::istringstream in(line);
-  const std::vector<double> numbers{std::istream_iterator<double>(in), {}};
-  if (numbers.size() != count || !in.eof())
-    throw std::runtime_error(where + ": expected " + std::to_string(count) + " numbers, found '" + line + "'");
+  std::vector<double> numbers;
+  for (std::string word; in >> word;)
+  {
+    const auto number = parseNumber(word);
+    if (!number || std::abs(*number) > kLargestNumber)
+      numbers.clear(), in.setstate(std::ios::failbit);
+    else
+      numbers.push_back(*number);
+  }
+  if (numbers.size() != count)
+    throw std::runtime_error(where + ": expected " + std::to_string(count) + " numbers within 1e9, found '" +
+                             printable(line.substr(0, kMostShown), false) + "'");
   return numbers;
 }
 
@@ -43,7 +70,8 @@ Eigen::Isometry3d parsePose(const std::string& line, const std::string& where)
 std::vector<std::string> readLines(const std::string& path)
 {
   std::vector<std::string> lines;
-  std::ifstream in(path);
+  if (!fs::exists(path)) return lines;
+  std::istringstream in(readTextFile(path, kMaxTextFile));
   for (std::string line; std::getline(in, line);) lines.push_back(line);
   while (!lines.empty() && lines.back().find_first_not_of(" \t\r") == std::string::npos) lines.pop_back();
   return lines;
@@ -125,6 +153,7 @@ const std::vector<std::string>& semanticKittiSplit(const std::string& split)
 
 std::string predictionFile(const std::string& root, const std::string& sequence, const std::string& scan_name)
 {
+  requireSequenceName(sequence);
   return (fs::path(root) / "sequences" / sequence / "predictions" / (scan_name + ".label")).string();
 }
 
@@ -132,6 +161,7 @@ SemanticKittiSequence::SemanticKittiSequence(const std::string& root, const std:
                                              const std::string& predictions_root)
     : name_(name), folder_((fs::path(root) / "sequences" / name).string())
 {
+  requireSequenceName(name);
   requireFolder(folder_);
   const std::string scans = folder_ + "/velodyne", labels = folder_ + "/labels";
   has_labels_ = fs::is_directory(labels);
@@ -216,6 +246,8 @@ std::vector<double> SemanticKittiSequence::readTimes() const
   {
     const std::size_t line = lineOf(scan);
     times.push_back(parseNumbers(requireLine(lines, line, path), 1, whereInFile(path, line)).front());
+    if (times.back() < 0.0)
+      throw std::runtime_error(whereInFile(path, line) + ": expected a time of 0 or more, found " + lines[line]);
   }
   return times;
 }

@@ -1,9 +1,10 @@
 #include "drawing/axis.h"
 
+#include "core/plain_numbers.h"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <cstdio>
 
 namespace lidar_panoptic_clustering
 {
@@ -70,9 +71,7 @@ std::string tickLabel(double value, double step)
 
 std::string numberLabel(double value, int decimals)
 {
-  std::array<char, 400> buffer{};
-  std::snprintf(buffer.data(), buffer.size(), "%.*f", decimals, std::abs(value));
-  std::string digits = buffer.data();
+  std::string digits = fixedText(std::abs(value), decimals);
   if (!std::isfinite(value)) return digits;
   const std::size_t point = std::min(digits.find('.'), digits.size());
   for (std::size_t i = point; i > 3; i -= 3) digits.insert(i - 3, ",");

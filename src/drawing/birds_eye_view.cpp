@@ -123,6 +123,25 @@ void drawScaleBar(Canvas& canvas, const BirdsEyeView& view, double scale)
               {13.0 * scale, {kWhite, 0.9}, TextAlign::kCentre});
 }
 
+void drawBoxes(Canvas& canvas, const BirdsEyeView& view, const std::vector<NamedBox>& boxes, double scale)
+{
+  for (const NamedBox& box : boxes)
+  {
+    const double c = std::cos(box.yaw), s = std::sin(box.yaw);
+    const auto corner = [&](double along, double across)
+    {
+      const double x = 0.5 * along * box.length, y = 0.5 * across * box.width;
+      return view.toPixel(box.x + c * x - s * y, box.y + s * x + c * y);
+    };
+    const std::vector<PixelPoint> outline{corner(1, 1), corner(-1, 1), corner(-1, -1), corner(1, -1), corner(1, 1)};
+    canvas.line(outline, {box.rgb}, 2.0 * scale);
+    double top = outline[0].y;
+    for (const PixelPoint& point : outline) top = std::min(top, point.y);
+    canvas.textOnPlate({view.toPixel(box.x, box.y).x, top - 18.0 * scale}, box.text,
+                       {25.0 * scale, {kWhite}, TextAlign::kCentre, true}, {kBackground, 0.8});
+  }
+}
+
 void drawMarks(Canvas& canvas, const BirdsEyeView& view, const std::vector<Mark>& marks, double scale)
 {
   for (const Mark& mark : marks)
@@ -171,6 +190,7 @@ void drawBirdsEyeView(Canvas& canvas, const BirdsEyeView& view, const ScanPanel&
   drawPoints(canvas, view, *panel.cloud, scale);
   drawRangeLabels(canvas, view, scale);
   drawSensor(canvas, view, scale);
+  drawBoxes(canvas, view, panel.boxes, scale);
   drawScaleBar(canvas, view, scale);
   drawMarks(canvas, view, panel.marks, scale);
   canvas.unclip();

@@ -13,15 +13,6 @@ inline bool isReturn(const PanopticPoint& p)
   return std::isfinite(p.x) && std::isfinite(p.y) && std::isfinite(p.z) && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F);
 }
 
-/// The part of the ground a bird's-eye view shows [m].
-struct ViewWindow
-{
-  double min_x = -50.0, max_x = 50.0, min_y = -25.0, max_y = 25.0;
-
-  double width() const { return max_x - min_x; }
-  double height() const { return max_y - min_y; }
-};
-
 /// The window that suits all panels, see drawScanFigure; its height is 0.45 to 0.75 of its width.
 ViewWindow viewWindow(const std::vector<ScanPanel>& panels);
 

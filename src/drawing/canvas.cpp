@@ -1,14 +1,14 @@
 #include "drawing/canvas.h"
 
+#include "core/aside_file.h"
+
 #include <cairo.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <cmath>
 #include <cstring>
-#include <filesystem>
 #include <stdexcept>
-#include <system_error>
+#include <string>
 
 namespace lidar_panoptic_clustering
 {
@@ -186,23 +186,18 @@ double Canvas::textWidth(const std::string& text, const TextStyle& style)
 
 void Canvas::writePng(const std::string& path) const
 {
-  const auto fail = [&path](const std::string& cause)
-  { throw std::runtime_error("cannot write picture '" + path + "': " + cause); };
-  cairo_status_t status = cairo_status(context_.get());
-  if (status != CAIRO_STATUS_SUCCESS) fail(cairo_status_to_string(status));
-
-  const std::string aside = path + ".part";
-  errno = 0;
-  status = cairo_surface_write_to_png(surface_.get(), aside.c_str());
-  std::error_code error(errno, std::generic_category());
-  if (status == CAIRO_STATUS_SUCCESS)
+  const auto append = [](void* png, const unsigned char* bytes, unsigned count)
   {
-    std::filesystem::rename(aside, path, error);
-    if (!error) return;
-  }
-  std::error_code ignored;
-  std::filesystem::remove(aside, ignored);
-  fail(error ? error.message() : cairo_status_to_string(status));
+    static_cast<std::string*>(png)->append(reinterpret_cast<const char*>(bytes), count);
+    return CAIRO_STATUS_SUCCESS;
+  };
+  AsideFile file(path);
+  std::string png;
+  cairo_status_t status = cairo_status(context_.get());
+  if (status == CAIRO_STATUS_SUCCESS) status = cairo_surface_write_to_png_stream(surface_.get(), append, &png);
+  if (status != CAIRO_STATUS_SUCCESS)
+    throw std::runtime_error("cannot write picture '" + path + "': " + cairo_status_to_string(status));
+  file.save(png);
 }
 
 void Canvas::setPaint(Paint paint)

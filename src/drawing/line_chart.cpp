@@ -1,5 +1,7 @@
 #include "drawing/plot.h"
 
+#include "core/plain_numbers.h"
+
 #include <cmath>
 #include <stdexcept>
 
@@ -16,8 +18,8 @@ void check(const LineChart& chart)
       if (std::isinf(point.x) || std::isinf(point.y))
         throw std::invalid_argument(name + series.name + "' has an infinite value");
       if ((chart.x.logarithmic && point.x <= 0.0) || (chart.y.logarithmic && point.y <= 0.0))
-        throw std::invalid_argument(name + series.name + "' has the point (" + std::to_string(point.x) + ", " +
-                                    std::to_string(point.y) + "), expected values above 0 on a logarithmic axis");
+        throw std::invalid_argument(name + series.name + "' has the point (" + shortText(point.x) + ", " +
+                                    shortText(point.y) + "), expected values above 0 on a logarithmic axis");
     }
 }
 

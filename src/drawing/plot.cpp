@@ -1,5 +1,7 @@
 #include "drawing/plot.h"
 
+#include "core/plain_numbers.h"
+
 #include "drawing/axis.h"
 
 #include <algorithm>
@@ -18,8 +20,8 @@ constexpr double kPi = 3.14159265358979323846;
 void checkAxis(const Axis& axis)
 {
   if (std::isinf(axis.min) || std::isinf(axis.max) || axis.min >= axis.max)
-    throw std::invalid_argument("axis '" + axis.title + "': from " + std::to_string(axis.min) + " to " +
-                                std::to_string(axis.max) + ", expected finite ends in rising order");
+    throw std::invalid_argument("axis '" + axis.title + "': from " + shortText(axis.min) + " to " +
+                                shortText(axis.max) + ", expected finite ends in rising order");
   if (axis.logarithmic && (axis.min <= 0.0 || axis.max <= 0.0))
     throw std::invalid_argument("axis '" + axis.title + "': logarithmic, expected ends above 0");
 }

@@ -19,8 +19,9 @@ std::string count(std::size_t number, const std::string& noun)
 }
 
 /// "103,218 returns, 9,871 on things, 31 instances"
-std::string describe(const ScanPanel& panel)
+std::string describe(const ScanPanel& panel, bool counted)
 {
+  if (!counted) return panel.caption;
   std::size_t returns = 0, things = 0;
   std::unordered_set<std::uint32_t> instances;
   for (const PanopticPoint& point : *panel.cloud)
@@ -53,13 +54,13 @@ void drawHeading(Canvas& canvas, const ScanFigureLayout& layout, const ScanFigur
                     right - layout.heading.x);
 }
 
-void drawTitle(Canvas& canvas, const Box& box, const ScanPanel& panel, double scale)
+void drawTitle(Canvas& canvas, const Box& box, const ScanPanel& panel, bool counted, double scale)
 {
   const double middle = box.y + 0.5 * box.height;
   const TextStyle style{19.0 * scale, {kTitle}, TextAlign::kLeft, true};
   canvas.fittedText({box.x, middle}, panel.title, style, 0.6 * box.width);
   const double used = std::min(0.6 * box.width, canvas.textWidth(panel.title, style)) + 24.0 * scale;
-  canvas.fittedText({box.right(), middle}, describe(panel), {15.0 * scale, {kCaption}, TextAlign::kRight},
+  canvas.fittedText({box.right(), middle}, describe(panel, counted), {15.0 * scale, {kCaption}, TextAlign::kRight},
                     box.width - used);
 }
 
@@ -78,7 +79,7 @@ void drawScanFigure(const std::vector<ScanPanel>& panels, const std::string& png
   for (std::size_t i = 0; i < panels.size(); ++i)
   {
     const ScanFigureLayout::Panel& place = layout.panels[i];
-    drawTitle(canvas, place.title, panels[i], layout.scale);
+    drawTitle(canvas, place.title, panels[i], options.counts, layout.scale);
     drawBirdsEyeView(canvas, place.birds_eye_view, panels[i], layout.scale);
     drawFrame(canvas, place.birds_eye_view.box);
     if (place.range_picture.height <= 0.0) continue;

@@ -19,6 +19,8 @@ void check(const std::vector<ScanPanel>& panels, const ScanFigureOptions& option
                                 ", expected 320..8192");
   if (options.columns < 0)
     throw std::invalid_argument("scan figure: columns is " + std::to_string(options.columns) + ", expected 0 or more");
+  if (options.window && !(options.window->width() > 0.0 && options.window->height() > 0.0))
+    throw std::invalid_argument("scan figure: expected a window with max above min, in x and in y");
   for (const ScanPanel& panel : panels)
   {
     if (panel.cloud == nullptr) throw std::invalid_argument("scan figure: panel '" + panel.title + "' has no cloud");
@@ -44,7 +46,7 @@ ScanFigureLayout layOut(const std::vector<ScanPanel>& panels, const ScanFigureOp
   ScanFigureLayout layout;
   layout.scale = options.panel_width_px / 1280.0;
   const auto px = [&layout](double size) { return static_cast<int>(std::lround(size * layout.scale)); };
-  const ViewWindow window = viewWindow(panels);
+  const ViewWindow window = options.window ? *options.window : viewWindow(panels);
   const int columns = columnCount(panels, options), panel_width = options.panel_width_px;
   const int margin = px(24), title = px(44), gap = px(10), headings = px(24);
   const int view_height = static_cast<int>(std::lround(panel_width * window.height() / window.width()));
@@ -61,7 +63,7 @@ ScanFigureLayout layOut(const std::vector<ScanPanel>& panels, const ScanFigureOp
     {
       ScanFigureLayout::Panel panel;
       const double x = margin + static_cast<double>(i - first) * (panel_width + margin), width = panel_width;
-      const int range_height = rangePictureHeight(*panels[i].cloud, panel_width);
+      const int range_height = options.range_images ? rangePictureHeight(*panels[i].cloud, panel_width) : 0;
       panel.title = {x, double(y), width, double(title)};
       panel.birds_eye_view = {{x, panel.title.bottom(), width, double(view_height)}, window};
       panel.range_picture = {x, panel.birds_eye_view.box.bottom() + gap, width, double(range_height)};

@@ -1,6 +1,9 @@
 #include "lidar_panoptic_clustering/evaluation/benchmark_report.h"
 
+#include "evaluation/json_text.h"
+
 #include <algorithm>
+#include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
 #include <stdexcept>
@@ -37,26 +40,53 @@ json timesToJson(const std::vector<FrameTime>& times)
           {"frames", std::move(frames)}};
 }
 
+double milliseconds(const json& frame, const char* key)
+{
+  constexpr double kMost = 1e9;
+  const json& value = jsonMember(frame, key);
+  if (!value.is_number() || !(value.get<double>() >= 0.0 && value.get<double>() <= kMost))
+    throw std::invalid_argument(std::string("key '") + key + "' is " + briefly(value) +
+                                ", expected milliseconds from 0 to 1e9");
+  return value.get<double>();
+}
+
 std::vector<FrameTime> timesFromJson(const json& object)
 {
+  constexpr std::uint64_t kMost = std::numeric_limits<std::uint32_t>::max();
   std::vector<FrameTime> times;
-  for (const json& frame : object.at("frames"))
-    times.push_back({frame.at("scan").get<std::string>(), frame.at("points").get<std::uint32_t>(),
-                     frame.at("thing_points").get<std::uint32_t>(), frame.at("cluster_ms").get<double>(),
-                     frame.at("pipeline_ms").get<double>()});
+  for (const json& frame : jsonList(object, "frames"))
+    times.push_back({jsonText(frame, "scan"), static_cast<std::uint32_t>(jsonNumber(frame, "points", kMost)),
+                     static_cast<std::uint32_t>(jsonNumber(frame, "thing_points", kMost)),
+                     milliseconds(frame, "cluster_ms"), milliseconds(frame, "pipeline_ms")});
   return times;
+}
+
+std::map<std::string, std::uint64_t> scansFromJson(const json& object)
+{
+  std::map<std::string, std::uint64_t> scans;
+  if (!object.is_object()) throw std::invalid_argument("key 'scans' is " + briefly(object) + ", expected a map");
+  for (const auto& [sequence, count] : object.items())
+    scans[sequence] = jsonNumber(object, sequence.c_str(), kMostCount);
+  return scans;
+}
+
+/// What `read` returns; names the source in what it throws.
+template <class Read>
+auto named(const std::string& source, const Read& read)
+{
+  try
+  {
+    return read();
+  }
+  catch (const std::invalid_argument& error)
+  {
+    throw std::invalid_argument(source + ": " + error.what());
+  }
 }
 
 json evaluationToJson(const EvaluationReport& evaluation)
 {
   return json::parse(evaluation.toJsonText());
-}
-
-json parse(const std::string& text, const std::string& source)
-{
-  json parsed = json::parse(text, nullptr, false);
-  if (parsed.is_discarded()) throw std::invalid_argument(source + ": not JSON, expected a benchmark report");
-  return parsed;
 }
 
 std::set<std::string> scanNames(const BenchmarkReport& report)
@@ -131,20 +161,20 @@ std::string BenchmarkReport::toJsonText() const
 BenchmarkReport BenchmarkReport::fromJsonText(const std::string& text, const std::string& source,
                                               const std::shared_ptr<const ClassTable>& table)
 {
-  const json parsed = parse(text, source);
+  const json parsed = parseJson(text, source, "a benchmark report");
   try
   {
     const json& quality = parsed.at("quality");
     BenchmarkReport report(quality.at("semantics").get<std::string>(),
                            parsed.at("rows").get<std::vector<std::string>>(), table);
-    report.scans = quality.at("scans").get<std::map<std::string, std::uint64_t>>();
+    report.scans = named(source, [&] { return scansFromJson(quality.at("scans")); });
     report.interrupted = parsed.at("interrupted").get<bool>();
     report.before = EvaluationReport::fromJsonText(quality.at("before_clustering").dump(), source, table);
     for (BenchmarkRow& row : report.rows)
     {
       const std::string evaluation = quality.at("rows").at(row.name).dump();
       row.evaluation = EvaluationReport::fromJsonText(evaluation, source + ", row '" + row.name + "'", table);
-      row.times = timesFromJson(parsed.at("times").at(row.name));
+      row.times = named(source, [&] { return timesFromJson(parsed.at("times").at(row.name)); });
     }
     return report;
   }
@@ -156,7 +186,7 @@ BenchmarkReport BenchmarkReport::fromJsonText(const std::string& text, const std
 
 std::string BenchmarkReport::classTableOf(const std::string& text, const std::string& source)
 {
-  const json parsed = parse(text, source);
+  const json parsed = parseJson(text, source, "a benchmark report");
   try
   {
     return parsed.at("quality").at("before_clustering").at("class_table").get<std::string>();

@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
 
+#include "evaluation/json_text.h"
+
 #include <algorithm>
 #include <cstdint>
 #include <limits>
@@ -13,29 +15,6 @@ namespace lidar_panoptic_clustering
 namespace
 {
 using nlohmann::json;
-
-const json& member(const json& object, const char* key)
-{
-  if (!object.is_object() || object.find(key) == object.end())
-    throw std::invalid_argument("key '" + std::string(key) + "' is missing");
-  return object[key];
-}
-
-std::uint64_t number(const json& object, const char* key)
-{
-  const json& value = member(object, key);
-  if (!value.is_number_unsigned())
-    throw std::invalid_argument("key '" + std::string(key) + "' is " + value.dump() + ", expected a whole number");
-  return value.get<std::uint64_t>();
-}
-
-std::string text(const json& object, const char* key)
-{
-  const json& value = member(object, key);
-  if (!value.is_string())
-    throw std::invalid_argument("key '" + std::string(key) + "' is " + value.dump() + ", expected text");
-  return value.get<std::string>();
-}
 
 const char* kindName(const ClassInfo& info)
 {
@@ -59,28 +38,26 @@ json toJson(const ClassCounts& counts, const ClassInfo& info)
 
 ClassCounts classCountsFromJson(const json& object, const ClassInfo& info)
 {
-  if (text(object, "kind") != kindName(info))
-    throw std::invalid_argument("kind is '" + text(object, "kind") + "', the class table says '" + kindName(info) +
+  if (jsonText(object, "kind") != kindName(info))
+    throw std::invalid_argument("kind is '" + jsonText(object, "kind") + "', the class table says '" + kindName(info) +
                                 "'");
-  const json& sum = member(object, "iou_sum");
-  const json& points = member(object, "points");
+  const json& sum = jsonMember(object, "iou_sum");
+  const json& points = jsonMember(object, "points");
   ClassCounts counts;
-  counts.tp = number(object, "tp"), counts.fp = number(object, "fp"), counts.fn = number(object, "fn");
-  counts.iou_sum = {number(sum, "whole"), number(sum, "fraction_2_53")};
+  counts.tp = jsonNumber(object, "tp"), counts.fp = jsonNumber(object, "fp"), counts.fn = jsonNumber(object, "fn");
+  counts.iou_sum = {jsonNumber(sum, "whole"), jsonNumber(sum, "fraction_2_53")};
   if (counts.iou_sum.fraction >> ExactSum::kFractionBits != 0)
     throw std::invalid_argument("key 'fraction_2_53' is " + std::to_string(counts.iou_sum.fraction) +
                                 ", expected less than 2^53");
-  counts.points_both = number(points, "both");
-  counts.points_predicted = number(points, "predicted");
-  counts.points_true = number(points, "true");
+  counts.points_both = jsonNumber(points, "both");
+  counts.points_predicted = jsonNumber(points, "predicted");
+  counts.points_true = jsonNumber(points, "true");
   return counts;
 }
 
 json parseReport(const std::string& report, const std::string& source)
 {
-  const json parsed = json::parse(report, nullptr, false);
-  if (parsed.is_discarded()) throw std::invalid_argument(source + ": not JSON, expected an evaluation report");
-  return parsed;
+  return parseJson(report, source, "an evaluation report");
 }
 }  // namespace
 
@@ -114,12 +91,10 @@ json toJson(const PanopticQuality& quality)
 
 PanopticQuality panopticQualityFromJson(const json& object, std::shared_ptr<const ClassTable> table)
 {
-  const std::uint64_t min_points = number(object, "min_points");
-  if (min_points > std::uint64_t{std::numeric_limits<int>::max()})
-    throw std::invalid_argument("key 'min_points' is " + std::to_string(min_points) + ", expected less than 2^31");
+  const std::uint64_t min_points = jsonNumber(object, "min_points", std::numeric_limits<int>::max());
   PanopticQuality quality(std::move(table), static_cast<int>(min_points));
 
-  const json& per_class = member(object, "per_class");
+  const json& per_class = jsonMember(object, "per_class");
   std::vector<ClassCounts> counts(quality.classes().size());
   std::size_t evaluated = 0;
   for (std::size_t c = 0; c < counts.size(); ++c)
@@ -129,7 +104,7 @@ PanopticQuality panopticQualityFromJson(const json& object, std::shared_ptr<cons
     const ClassInfo& info = quality.table()[index];
     try
     {
-      counts[c] = classCountsFromJson(member(per_class, info.name.c_str()), info);
+      counts[c] = classCountsFromJson(jsonMember(per_class, info.name.c_str()), info);
     }
     catch (const std::invalid_argument& error)
     {
@@ -140,7 +115,7 @@ PanopticQuality panopticQualityFromJson(const json& object, std::shared_ptr<cons
   if (per_class.size() != evaluated)
     throw std::invalid_argument("key 'per_class' has " + std::to_string(per_class.size()) + " classes, class table '" +
                                 quality.table().name() + "' evaluates " + std::to_string(evaluated));
-  quality.restore(std::move(counts), number(object, "scans"));
+  quality.restore(std::move(counts), jsonNumber(object, "scans"));
   return quality;
 }
 
@@ -156,8 +131,8 @@ json toJson(const ObjectErrorCounts& counts)
 ObjectErrorCounts objectErrorCountsFromJson(const json& object)
 {
   ObjectErrorCounts counts;
-  counts.matched = number(object, "matched"), counts.split = number(object, "split");
-  counts.merged = number(object, "merged"), counts.missed = number(object, "missed");
+  counts.matched = jsonNumber(object, "matched"), counts.split = jsonNumber(object, "split");
+  counts.merged = jsonNumber(object, "merged"), counts.missed = jsonNumber(object, "missed");
   return counts;
 }
 
@@ -192,9 +167,9 @@ EvaluationReport EvaluationReport::fromJsonText(const std::string& report, const
   {
     EvaluationReport result(table);
     result.quality = panopticQualityFromJson(parsed, std::move(table));
-    result.objects = objectErrorCountsFromJson(member(parsed, "true_objects"));
-    for (const json& scan : member(parsed, "skipped"))
-      result.skipped.push_back({text(scan, "scan"), text(scan, "reason")});
+    result.objects = objectErrorCountsFromJson(jsonMember(parsed, "true_objects"));
+    for (const json& scan : jsonList(parsed, "skipped"))
+      result.skipped.push_back({jsonText(scan, "scan"), jsonText(scan, "reason")});
     return result;
   }
   catch (const std::invalid_argument& error)
@@ -205,9 +180,10 @@ EvaluationReport EvaluationReport::fromJsonText(const std::string& report, const
 
 std::string EvaluationReport::classTableOf(const std::string& report, const std::string& source)
 {
+  const json parsed = parseReport(report, source);
   try
   {
-    return text(parseReport(report, source), "class_table");
+    return jsonText(parsed, "class_table");
   }
   catch (const std::invalid_argument& error)
   {

@@ -1,8 +1,10 @@
 #include "lidar_panoptic_clustering/evaluation/benchmark_report.h"
 
+#include "core/plain_numbers.h"
+#include "core/printable.h"
+
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <limits>
 #include <numeric>
 #include <stdexcept>
@@ -57,9 +59,7 @@ std::string padded(const std::string& text, int width)
 std::string printed(double value, int decimals)
 {
   if (std::isnan(value)) return "-";
-  char text[64];
-  std::snprintf(text, sizeof text, "%.*f", decimals, value);
-  return text;
+  return fixedText(value, decimals);
 }
 
 std::vector<Column> qualityColumns(const BenchmarkReport& report)
@@ -126,7 +126,7 @@ std::vector<Column> publishedColumns(const BenchmarkReport& report)
 std::size_t nameWidth(const BenchmarkReport& report)
 {
   std::size_t width = 0;
-  for (const BenchmarkRow& row : report.rows) width = std::max(width, row.name.size());
+  for (const BenchmarkRow& row : report.rows) width = std::max(width, printable(row.name, false).size());
   return width;
 }
 
@@ -149,7 +149,8 @@ std::string formatTable(const BenchmarkReport& report, const std::vector<Column>
   }
   for (std::size_t r = 0; r < report.rows.size(); ++r)
   {
-    out += report.rows[r].name + std::string(name_width - report.rows[r].name.size(), ' ');
+    const std::string name = printable(report.rows[r].name, false);
+    out += name + std::string(name_width - name.size(), ' ');
     for (const Column& column : columns) out += padded(printed(column.values[r], column.decimals), column.width);
     out += "\n";
   }
@@ -160,7 +161,7 @@ std::string scanList(const BenchmarkReport& report)
 {
   std::uint64_t total = 0;
   std::string sequences;
-  for (const auto& [sequence, count] : report.scans) total += count, sequences += " " + sequence;
+  for (const auto& [sequence, count] : report.scans) total += count, sequences += " " + printable(sequence, false);
   return std::to_string(total) + " scans of sequence" + (report.scans.size() == 1 ? "" : "s") + sequences;
 }
 
@@ -202,7 +203,7 @@ std::string formatBenchmark(const BenchmarkReport& report, std::size_t width)
     for (Column& column : publishedColumns(report)) time.push_back(std::move(column));
 
   const bool side_by_side = width == 0 || nameWidth(report) + widthOf(quality) + widthOf(time) <= width;
-  std::string out = "Semantics: " + report.semantics + "; ";
+  std::string out = "Semantics: " + printable(report.semantics, false) + "; ";
   out += evaluated ? scanList(report) + " evaluated" : std::string("no ground truth to evaluate with");
   out += ", " + std::to_string(report.before.skipped.size()) + " skipped" +
          (report.interrupted ? "; interrupted" : "") + "\n\n";

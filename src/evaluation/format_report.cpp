@@ -1,5 +1,8 @@
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
 
+#include "core/plain_numbers.h"
+#include "core/printable.h"
+
 #include <cstdarg>
 #include <cstdio>
 
@@ -24,7 +27,7 @@ void appendClasses(const PanopticQuality& quality, ClassKind kind, std::string& 
     const ClassInfo& info = quality.table()[static_cast<ClassIndex>(c)];
     const ClassCounts& counts = quality.classes()[c];
     if (info.kind != kind) continue;
-    append(out, "%-16.40s", info.name.c_str());
+    append(out, "%-16.40s", printable(info.name, false).c_str());
     append(out, "%7.1f %6.1f %6.1f %6.1f", 100 * counts.pq(), 100 * counts.sq(), 100 * counts.rq(), 100 * counts.iou());
     append(out, " %8llu %7llu %7llu\n", static_cast<unsigned long long>(counts.tp),
            static_cast<unsigned long long>(counts.fp), static_cast<unsigned long long>(counts.fn));
@@ -34,6 +37,7 @@ void appendClasses(const PanopticQuality& quality, ClassKind kind, std::string& 
 
 std::string formatReport(const EvaluationReport& report)
 {
+  const PlainNumbers plain;
   const PanopticFigures f = report.quality.figures();
   std::string out;
   append(out, "[%%]                 PQ     SQ     RQ    IoU       TP      FP      FN\n");

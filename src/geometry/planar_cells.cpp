@@ -14,11 +14,11 @@ constexpr std::uint64_t kFewPairs = 64;
 constexpr float kFar = std::numeric_limits<float>::max();
 
 /// In order of layer, y and x: one more is the next cell along x, kRowStep more the one beside it along y.
-constexpr std::uint64_t kRowStep = 1U << 21U;
-std::uint64_t placeOf(const VoxelKey& key)
+constexpr std::uint64_t kRowStep = 1U << 28U;
+std::uint64_t placeOf(const PlanarKey& key)
 {
-  constexpr std::int64_t kMiddle = 1 << 20;
-  return (static_cast<std::uint64_t>(key.z) << 42U) + (static_cast<std::uint64_t>(key.y + kMiddle) << 21U) +
+  constexpr std::int64_t kMiddle = 1 << 27;
+  return (static_cast<std::uint64_t>(key.layer) << 56U) + (static_cast<std::uint64_t>(key.y + kMiddle) << 28U) +
          static_cast<std::uint64_t>(key.x + kMiddle);
 }
 
@@ -64,9 +64,9 @@ void PlanarCells::add(float x, float y, std::int32_t layer, float distance, std:
     last_distance_ = distance;
     cells_per_m_ = 1.0F / (kSideInDiagonals * distance);
   }
-  const VoxelKey key{floorToInt(x * cells_per_m_), floorToInt(y * cells_per_m_), layer};
+  const PlanarKey key{floorToInt(x * cells_per_m_), floorToInt(y * cells_per_m_), layer};
   // neighbours in the scan mostly share a cell
-  if (last_cell_ == kNone || key.x != last_key_.x || key.y != last_key_.y || key.z != last_key_.z)
+  if (last_cell_ == kNone || key.x != last_key_.x || key.y != last_key_.y || key.layer != last_key_.layer)
   {
     last_cell_ = index_.insert(key);
     last_key_ = key;
@@ -123,7 +123,7 @@ void PlanarCells::joinNeighbours(const std::vector<float>& distance_of_layer, in
         const bool is_new = reach == 1 || dy == reach || places_[n].place + far == above ||
                             places_[n].place == above + far;  // not beside it
         if (is_new && sets_.find(cell) != sets_.find(other) &&
-            areCloser(cell, other, distance_of_layer[static_cast<std::size_t>(index_[cell].z)]))
+            areCloser(cell, other, distance_of_layer[static_cast<std::size_t>(index_[cell].layer)]))
           sets_.unite(cell, other);
       }
     }
@@ -131,7 +131,7 @@ void PlanarCells::joinNeighbours(const std::vector<float>& distance_of_layer, in
 
 bool PlanarCells::areCloser(std::uint32_t cell_a, std::uint32_t cell_b, float distance)
 {
-  const VoxelKey &key_a = index_[cell_a], &key_b = index_[cell_b];
+  const PlanarKey &key_a = index_[cell_a], &key_b = index_[cell_b];
   if (key_a.x == key_b.x && key_a.y == key_b.y) return true;
   const Range a = ranges_[cell_a], b = ranges_[cell_b];
   const float squared_distance = distance * distance;

@@ -1,3 +1,4 @@
+#include "core/plain_numbers.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/evaluation/object_errors.h"
 #include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
@@ -181,15 +182,16 @@ private:
     else
       status.summary(Level::OK, quality_->scanCount() > 0 ? "evaluating" : "no pair of clouds yet");
     const PanopticFigures values = quality_->figures();
+    const PlainNumbers plain;
     for (const Figure& figure : figures_) status.addf(figure.name, "%.4f", values.*figure.value);
-    status.add("scans evaluated", quality_->scanCount());
-    status.add("true objects", objects_.total());
-    status.add("true objects split", objects_.split);
-    status.add("true objects merged", objects_.merged);
-    status.add("true objects missed", objects_.missed);
-    status.add("predictions without ground truth", matcher_->unmatchedLeft());
-    status.add("ground truths without prediction", matcher_->unmatchedRight());
-    status.add("clouds refused", refused_);
+    status.add("scans evaluated", std::to_string(quality_->scanCount()));
+    status.add("true objects", std::to_string(objects_.total()));
+    status.add("true objects split", std::to_string(objects_.split));
+    status.add("true objects merged", std::to_string(objects_.merged));
+    status.add("true objects missed", std::to_string(objects_.missed));
+    status.add("predictions without ground truth", std::to_string(matcher_->unmatchedLeft()));
+    status.add("ground truths without prediction", std::to_string(matcher_->unmatchedRight()));
+    status.add("clouds refused", std::to_string(refused_));
   }
 
   /// Class ids and instances of a cloud's pixels.

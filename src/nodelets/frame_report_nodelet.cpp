@@ -1,3 +1,4 @@
+#include "core/plain_numbers.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/drawing/scan_figure.h"
 #include "lidar_panoptic_clustering/pipeline/factory.h"
@@ -27,7 +28,7 @@ namespace
 {
 struct ReportConfig
 {
-  std::string algorithm = "all";
+  std::string algorithm = "all";  ///< or names with commas between them
   int frames = 0;           ///< of each algorithm, then the process ends; 0 for no end
   double timeout_s = 15.0;  ///< without a new frame, then the process ends
   std::string picture;      ///< PNG file
@@ -36,9 +37,7 @@ struct ReportConfig
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
   {
-    auto algorithms = algorithmNames();
-    algorithms.push_back("all");
-    visitor("algorithm", self.algorithm, algorithms);
+    visitor("algorithm", self.algorithm, std::vector<std::string>{});
     visitor("frames", self.frames, 0, 2147483647);
     visitor("timeout_s", self.timeout_s, 0.1, 1e6);
     visitor("picture", self.picture, std::vector<std::string>{});
@@ -131,7 +130,7 @@ private:
   void load()
   {
     applyParameters(config_, readParameters(getPrivateNodeHandle(), describeParameters(config_)));
-    algorithms_ = config_.algorithm == "all" ? algorithmNames() : std::vector<std::string>{config_.algorithm};
+    algorithms_ = algorithmsOfList(config_.algorithm);
     for (const auto& algorithm : algorithms_) tracks_[algorithm];
     output_.open(config_.report);
     report_ = std::make_unique<FrameReport>(algorithms_, static_cast<std::size_t>(config_.frames));
@@ -201,9 +200,7 @@ private:
       auto& [waiting, recent, shown] = tracks_[algorithm];
       if (!shown.cloud && !recent.empty()) shown = recent.rbegin()->second;
       if (!shown.cloud) continue;
-      char caption[32];
-      std::snprintf(caption, sizeof(caption), "%.1f ms", shown.milliseconds);
-      panels.push_back({algorithm, shown.cloud.get(), {}, caption});
+      panels.push_back({algorithm, shown.cloud.get(), {}, fixedText(shown.milliseconds, 1) + " ms"});
     }
     try
     {

@@ -6,8 +6,10 @@
 #include "ros/cloud_subscription.h"
 #include "ros/frame_history.h"
 #include "ros/label_matcher.h"
+#include "ros/original_message.h"
 #include "ros/parameter_server.h"
 #include "ros/stream_diagnostics.h"
+#include "ros/unlabelled_outputs.h"
 
 #include <nodelet/nodelet.h>
 #include <pcl_conversions/pcl_conversions.h>
@@ -30,7 +32,8 @@ struct OrganizerNodeletConfig
   OrganizerConfig organizer;
   ScanLabellerConfig labeller;
   LabelMatcherConfig matcher;
-  int kept_frames = 5;  ///< clouds that wait for their instances; one is clustered, the next waits for that
+  int kept_frames = 5;        ///< clouds that wait for their instances; one is clustered, the next waits for that
+  bool float_fields = false;  ///< label and instance of ~output_original as float32, as pcl_ros's filters read them
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -39,6 +42,7 @@ struct OrganizerNodeletConfig
     ScanLabellerConfig::visit(self.labeller, visitor);
     LabelMatcherConfig::visit(self.matcher, visitor);
     visitor("kept_frames", self.kept_frames, 2, 100);
+    visitor("float_fields", self.float_fields);
   }
 };
 
@@ -56,6 +60,9 @@ RawImage viewOf(const sensor_msgs::Image& image)
 /// The classes come with the cloud, on ~label_input as sensor_msgs/Image or as a second PointCloud2, or from the
 /// geometry, as the parameter labels says. A cloud waits until its labels come; one that more than queue_size others
 /// have overtaken, or whose successor's labels have come, is dropped and counted.
+///
+/// What a network needs goes out before the labels come, while someone listens: the organised cloud on ~unlabelled, its
+/// ranges and intensities as images on ~range and ~intensity, see UnlabelledOutputs.
 ///
 /// Clouds go by pointer inside a nodelet manager. Subscribes only while someone listens to an output, to ~panoptic only
 /// while someone listens to ~output_original. What cannot be used is dropped, logged once in a while and shown in the
@@ -78,6 +85,7 @@ public:
     panoptic_.shutdown();
     output_.shutdown();
     original_.shutdown();
+    unlabelled_.shutdown();
   }
 
 private:
@@ -110,6 +118,7 @@ private:
     const ros::SubscriberStatusCallback status = [this](const ros::SingleSubscriberPublisher&) { connect(); };
     output_ = nh.advertise<LabelledCloud>("output", 1, status, status);
     original_ = nh.advertise<sensor_msgs::PointCloud2>("output_original", 1, status, status);
+    unlabelled_.advertise(nh, status);
   }
 
   void connect()
@@ -125,29 +134,48 @@ private:
           nh, "panoptic", kQueue, [this](const PanopticPtr& cloud) { carryBack(*cloud); },
           [this](const std::string& error) { refuse(error); });
 
-    if (!original && output_.getNumSubscribers() == 0)
+    const bool labelled = labelledIsWanted();
+    if (!labelled) labels_.shutdown();
+    if (!labelled && !unlabelled_.wanted())
     {
       input_.shutdown();
-      labels_.shutdown();
+      return;
     }
-    else if (!input_)
-    {
-      const auto queue = config_.labeller.separate() ? static_cast<std::uint32_t>(config_.matcher.queue_size) : kQueue;
-      const auto hints = ros::TransportHints().tcpNoDelay();
-      if (config_.labeller.labels == "image")
-        labels_ = nh.subscribe("label_input", queue, &OrganizerNodelet::receiveImage, this, hints);
-      else if (config_.labeller.labels == "cloud")
-        labels_ = nh.subscribe("label_input", queue, &OrganizerNodelet::receiveLabelCloud, this, hints);
-      input_ = nh.subscribe("input", queue, &OrganizerNodelet::receive, this, hints);
-    }
+    const auto queue = config_.labeller.separate() ? static_cast<std::uint32_t>(config_.matcher.queue_size) : kQueue;
+    const auto hints = ros::TransportHints().tcpNoDelay();
+    if (labelled && !labels_ && config_.labeller.labels == "image")
+      labels_ = nh.subscribe("label_input", queue, &OrganizerNodelet::receiveImage, this, hints);
+    if (labelled && !labels_ && config_.labeller.labels == "cloud")
+      labels_ = nh.subscribe("label_input", queue, &OrganizerNodelet::receiveLabelCloud, this, hints);
+    if (!input_) input_ = nh.subscribe("input", queue, &OrganizerNodelet::receive, this, hints);
   }
+
+  bool labelledIsWanted() const { return output_.getNumSubscribers() > 0 || original_.getNumSubscribers() > 0; }
 
   void receive(const sensor_msgs::PointCloud2ConstPtr& cloud)
   {
-    if (config_.labeller.separate())
-      match(matcher_->addCloud(cloud));
-    else
-      process(cloud, LabelPart());
+    if (!config_.labeller.separate()) return process(cloud, LabelPart());
+    if (!unlabelled_.wanted())
+      history_->forgetEarly();
+    else if (!organizeEarly(cloud))
+      return;
+    if (labelledIsWanted()) match(matcher_->addCloud(cloud));
+  }
+
+  /// For those who make its labels. It is kept for them, so that they fit what was seen.
+  bool organizeEarly(const sensor_msgs::PointCloud2ConstPtr& message)
+  {
+    FrameHistory::FramePtr frame = history_->make();
+    if (!attempt("input", [&] { organize(*message, *frame); }))
+    {
+      history_->recycle(std::move(frame));
+      return false;
+    }
+    frame->message = message;
+    const bool labelled = labelledIsWanted();
+    if (!labelled) diagnostics_.processed({{"organize", frame->organize_ms}});
+    history_->keepEarly(std::move(frame), labelled ? static_cast<std::size_t>(config_.matcher.queue_size) + 1 : 0);
+    return true;
   }
 
   void receiveImage(const sensor_msgs::ImageConstPtr& image)
@@ -178,25 +206,40 @@ private:
   {
     const bool original = original_.getNumSubscribers() > 0;
     if (!original) history_->clear();
-    FrameHistory::FramePtr frame = history_->make();
-    try
+    FrameHistory::FramePtr frame = history_->takeEarly(message);
+    const auto work = [&]
     {
-      StreamDiagnostics::StageMilliseconds stages;
-      organize(*message, labels, original, frame->scan, stages);
+      if (!frame->message) organize(*message, *frame);
+      if (!labelledIsWanted()) return diagnostics_.processed({{"organize", frame->organize_ms}});
+      const auto start = Clock::now();
+      label(viewOf(*message), labels, original, frame->scan);
+      const double label_ms = millisecondsSince(start);
       publish(message->header, frame->scan);
-      diagnostics_.processed(stages);
+      diagnostics_.processed({{"organize", frame->organize_ms}, {"label", label_ms}});
+      warn(labeller_->doubt());
       frame->message = message;
       frame->stamp = microseconds(message->header);
-    }
-    catch (const std::exception& error)
-    {
-      history_->recycle(std::move(frame));
-      return refuse("cloud on " + getPrivateNodeHandle().resolveName("input") + " dropped: " + error.what());
-    }
-    if (original)
+    };
+    if (attempt("input", work) && original)
       history_->keep(std::move(frame));
     else
       history_->recycle(std::move(frame));
+  }
+
+  /// Does something with a cloud that came on `topic`; a cloud that cannot be used is dropped, and that is said.
+  template <class Work>
+  bool attempt(const char* topic, Work work)
+  {
+    try
+    {
+      work();
+      return true;
+    }
+    catch (const std::exception& error)
+    {
+      refuse("cloud on " + getPrivateNodeHandle().resolveName(topic) + " dropped: " + error.what());
+      return false;
+    }
   }
 
   using Clock = std::chrono::steady_clock;
@@ -205,21 +248,31 @@ private:
     return std::chrono::duration<double, std::milli>(Clock::now() - start).count();
   }
 
-  void organize(const sensor_msgs::PointCloud2& message, const LabelPart& labels, bool all_points, OrganizedScan& scan,
-                StreamDiagnostics::StageMilliseconds& stages)
+  void organize(const sensor_msgs::PointCloud2& message, OrganizedFrame& frame)
   {
-    const RawCloud raw = viewOf(message);
     const auto start = Clock::now();
-    organizer_->organize(raw, scan);
-    const auto organized = Clock::now();
+    organizer_->organize(viewOf(message), frame.scan);
+    frame.organize_ms = millisecondsSince(start);
+    unlabelled_.publish(message.header, frame.scan.image.cloud);
+  }
+
+  void label(const RawCloud& raw, const LabelPart& labels, bool all_points, OrganizedScan& scan)
+  {
     if (config_.labeller.labels == "none")
       labeller_->takeGeometry(scan, all_points);
     else if (!config_.labeller.separate())
       labeller_->takeOwn(scan);
     else
       takeSeparate(raw, labels, scan);
-    stages = {{"organize", millisecondsSince(start) - millisecondsSince(organized)},
-              {"label", millisecondsSince(organized)}};
+  }
+
+  /// Once, and in the diagnostics for as long as it holds.
+  void warn(const std::string& doubt)
+  {
+    if (doubt == doubt_) return;
+    doubt_ = doubt;
+    diagnostics_.setWarning(doubt);
+    if (!doubt.empty()) NODELET_WARN("%s", doubt.c_str());
   }
 
   void takeSeparate(const RawCloud& raw, const LabelPart& labels, OrganizedScan& scan)
@@ -256,36 +309,20 @@ private:
       diagnostics_.setFigure("instances without scan", ++without_scan_);
       return;
     }
-    try
-    {
-      original_labeller_->carryBack(frame->scan, panoptic, label_, instance_);
-      publishOriginal(*frame->message);
-    }
-    catch (const std::exception& error)
-    {
-      refuse("cloud on " + getPrivateNodeHandle().resolveName("panoptic") + " dropped: " + error.what());
-    }
+    attempt("panoptic",
+            [&]
+            {
+              original_labeller_->carryBack(frame->scan, panoptic, label_, instance_);
+              publishOriginal(*frame->message);
+            });
     history_->recycle(std::move(frame));
   }
 
   void publishOriginal(const sensor_msgs::PointCloud2& sent)
   {
-    addLabels(viewOf(sent), label_, instance_, labelled_);
-    const auto message = boost::make_shared<sensor_msgs::PointCloud2>();
-    message->header = sent.header;
-    message->width = sent.width, message->height = sent.height;
-    message->is_bigendian = sent.is_bigendian, message->is_dense = sent.is_dense;
-    message->fields.resize(labelled_.fields.size());
-    for (std::size_t i = 0; i < labelled_.fields.size(); ++i)
-    {
-      message->fields[i].name = labelled_.fields[i].name;
-      message->fields[i].offset = labelled_.fields[i].offset;
-      message->fields[i].datatype = labelled_.fields[i].datatype;
-      message->fields[i].count = labelled_.fields[i].count;
-    }
-    message->point_step = labelled_.point_step, message->row_step = labelled_.row_step;
-    message->data.swap(labelled_.data);
-    original_.publish(message);
+    addLabels(viewOf(sent), label_, instance_, labelled_,
+              config_.float_fields ? AddedType::kFloat32 : AddedType::kUint32);
+    original_.publish(toMessage(labelled_, sent));
   }
 
   void refuse(const std::string& error)
@@ -304,11 +341,13 @@ private:
   std::vector<std::uint32_t> label_, instance_;  ///< by sent point
   OriginalCloud labelled_;
   std::uint64_t without_scan_ = 0;
+  std::string doubt_;
   StreamDiagnostics diagnostics_;
 
   std::mutex connect_mutex_;
   bool closed_ = false;
   ros::Publisher output_, original_;
+  UnlabelledOutputs unlabelled_;
   ros::Subscriber input_, labels_, panoptic_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -6,6 +6,7 @@
 #include "lidar_panoptic_clustering/clusterers/scan_line_run_clusterer.h"
 #include "lidar_panoptic_clustering/clusterers/supervoxel_clusterer.h"
 
+#include <sstream>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -47,12 +48,15 @@ Entry entry(const std::string& name)
           }};
 }
 
+/// One line an algorithm. cluster.launch, ./demo and the tests look for the nodelet MyRuleClusterNodelet of "my_rule".
 const std::vector<Entry>& entries()
 {
   static const std::vector<Entry> list = {
-      entry<EuclideanClusterer>("euclidean"), entry<SupervoxelClusterer>("supervoxel"),
-      entry<DepthClusterer>("depth"),         entry<ScanLineRunClusterer>("scan_line_run"),
-      entry<BirdsEyeClusterer>("birds_eye"),
+      entry<EuclideanClusterer>("euclidean"),        //
+      entry<SupervoxelClusterer>("supervoxel"),      //
+      entry<DepthClusterer>("depth"),                //
+      entry<ScanLineRunClusterer>("scan_line_run"),  //
+      entry<BirdsEyeClusterer>("birds_eye"),         //
   };
   return list;
 }
@@ -73,6 +77,16 @@ std::vector<std::string> algorithmNames()
 {
   std::vector<std::string> names;
   for (const auto& entry : entries()) names.push_back(entry.name);
+  return names;
+}
+
+std::vector<std::string> algorithmsOfList(const std::string& list)
+{
+  if (list == "all") return algorithmNames();
+  std::vector<std::string> names;
+  std::istringstream in(list);
+  for (std::string name; std::getline(in, name, ',');) names.push_back(find(name).name);
+  if (names.empty()) find(list);
   return names;
 }
 

@@ -6,6 +6,7 @@ namespace lidar_panoptic_clustering
 {
 BeamTable::BeamTable(const std::vector<float>& elevations_rad)
 {
+  for (const float elevation : elevations_rad) sine_.push_back(std::sin(elevation));
   for (std::size_t i = 0; i + 1 < elevations_rad.size(); ++i)
     lower_sine_.push_back(std::sin(0.5F * (elevations_rad[i] + elevations_rad[i + 1])));
   lower_sine_.push_back(-2.0F);

@@ -150,6 +150,31 @@ std::optional<bool> LayoutProbe::highestFirst(Orientation orientation) const
   return falls > rises;
 }
 
+double LayoutProbe::azimuthStep(Orientation orientation) const
+{
+  const Direction& d = along(orientation);
+  return d.count > 0 ? d.azimuth / static_cast<double>(d.count) : 0.0;
+}
+
+double LayoutProbe::elevationStep(Orientation orientation) const
+{
+  const Direction& d = along(orientation);
+  return d.count > 0 ? d.meanElevation() : 0.0;
+}
+
+double LayoutProbe::agreement(Orientation orientation, const std::vector<std::uint32_t>& row_of_line) const
+{
+  int agree = 0, seen = 0;
+  const auto& pairs = across(orientation).pairs;
+  for (std::size_t line = 0; line < pairs.size(); ++line)
+  {
+    if (pairs[line].elevation == 0.0F) continue;
+    agree += (pairs[line].elevation < 0.0F) == (row_of_line[line] < row_of_line[line + 1]);
+    ++seen;
+  }
+  return seen > 0 ? static_cast<double>(agree) / seen : 1.0;
+}
+
 double LayoutProbe::staggeredColumns(Orientation orientation) const
 {
   if (!enough()) return 0.0;

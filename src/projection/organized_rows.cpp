@@ -63,9 +63,9 @@ void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement
   resize(raw, placement.orientation, out);
   const std::size_t width = raw.width, height = raw.height;
   const bool rows_are_rings = placement.orientation == Orientation::kRowsAreRings;
-  const std::size_t lines = rows_are_rings ? height : width;
-  const auto lineBegin = [&](std::size_t ring)
-  { return (placement.highest_first ? ring : lines - 1 - ring) * out.image.cloud.width; };
+  const auto& row_of_line = placement.row_of_line;
+  const auto lineBegin = [&](std::size_t line)
+  { return (row_of_line.empty() ? line : row_of_line[line]) * out.image.cloud.width; };
 
   // what was read of a tile is still in the cache when its pixels are painted
   const std::size_t tile = rows_are_rings ? 1 : 16;

@@ -2,7 +2,6 @@
 
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/projection/azimuth.h"
-#include "lidar_panoptic_clustering/projection/scan_unfolding.h"
 
 #include <algorithm>
 #include <stdexcept>
@@ -47,7 +46,8 @@ void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>&
 
 void DirectionProjector::project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
                                  const std::vector<PointDirection>& directions, std::uint32_t rows,
-                                 std::uint32_t columns, std::uint32_t class_bits, Projection& out)
+                                 std::uint32_t columns, std::uint32_t class_bits, Projection& out,
+                                 float shift)
 {
   const std::size_t pixels = std::size_t{rows} * columns;
   out.pixel_of_point.resize(scan.size());
@@ -58,15 +58,16 @@ void DirectionProjector::project(const std::vector<ScanPoint>& scan, const std::
   out.cloud.width = columns;
   out.cloud.height = rows;
   out.cloud.is_dense = false;
-  locate(scan, directions, columns, out);
+  locate(scan, directions, columns, shift, out);
   listPoints(out);
   paint(scan, labels, class_bits, out);
 }
 
 void DirectionProjector::locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions,
-                                std::uint32_t columns, Projection& out)
+                                std::uint32_t columns, float shift, Projection& out)
 {
   hidden_.clear();
+  returns_ = 0;
   const float columns_per_radian = static_cast<float>(columns) / (2.0F * kPi);
   std::uint32_t pixel = columns / 2;
   for (std::uint32_t i = 0; i < scan.size(); ++i)
@@ -76,14 +77,16 @@ void DirectionProjector::locate(const std::vector<ScanPoint>& scan, const std::v
     if (azimuth == azimuth)  // false for NaN
     {
       // azimuth -pi is the same direction as +pi, which is column 0
-      const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian));
+      const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian + shift));
       pixel = row * columns + (column < columns ? column : 0);
+      ++returns_;
       std::uint32_t& owner = out.owner_of_pixel[pixel];
       if (owner == Projection::kNone || squaredRange(scan[i]) < squaredRange(scan[owner])) std::swap(owner, hidden);
     }
     out.pixel_of_point[i] = pixel;
     if (hidden != Projection::kNone) hidden_.push_back(hidden);
   }
+  without_return_ = scan.size() - returns_;
 }
 
 void DirectionProjector::listPoints(Projection& out) const
@@ -124,14 +127,15 @@ void PointProjector::project(const std::vector<ScanPoint>& scan, const std::vect
   if (!labels.empty() && labels.size() != scan.size())
     throw std::invalid_argument("expected one label a point, found " + std::to_string(labels.size()) + " labels for " +
                                 std::to_string(scan.size()) + " points");
-  out.rings = unfoldScan(scan, directions_);
+  out.rings = unfoldScan(scan, Sweep(), directions_);
   for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rows_ - 1);
   projector_.project(scan, labels, directions_, rows_, columns_, 0xFFFFU, out);
 }
 
-std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, std::vector<PointDirection>& directions)
+std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, const Sweep& sweep,
+                         std::vector<PointDirection>& directions)
 {
-  RingCounter rings;
+  RingCounter rings(sweep);
   std::uint32_t ring = 0;
   directions.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i)

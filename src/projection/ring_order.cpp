@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/projection/ring_order.h"
 
+#include <Eigen/Eigenvalues>
+
 #include <algorithm>
 #include <cmath>
 #include <numeric>
@@ -7,10 +9,16 @@
 namespace lidar_panoptic_clustering
 {
 void RingOrder::look(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions,
-                     std::uint32_t rings)
+                     std::uint32_t rings, bool remember)
 {
   sum(scan, directions, rings);
-  countSteps();
+  if (remember) recall();
+  lookAlong(Eigen::Vector3d::UnitZ());
+  if (!isMonotone() && !canBeSorted())
+  {
+    lookAlong(axisOfRings());
+    if (!isMonotone() && !canBeSorted()) lookAlong(Eigen::Vector3d::UnitZ());
+  }
   row_of_ring_.resize(rings);
   if (!isMonotone() && canBeSorted()) return sortByElevation();
   for (std::uint32_t ring = 0; ring < rings; ++ring) row_of_ring_[ring] = falls_ >= rises_ ? ring : rings - 1 - ring;
@@ -26,33 +34,71 @@ void RingOrder::sum(const std::vector<ScanPoint>& scan, const std::vector<PointD
   {
     if (std::isnan(directions[i].azimuth)) continue;
     const ScanPoint& p = scan[i];
-    const double sine = p.z / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+    const Eigen::Vector3d direction =
+        Eigen::Vector3f(p.x, p.y, p.z).cast<double>() / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
     Ring& ring = rings_[directions[i].row];
-    ring.sum += sine;
-    ring.sum_of_squares += sine * sine;
+    ring.sum += direction;
+    ring.sum_of_products.noalias() += direction * direction.transpose();
     ++ring.count;
   }
+}
+
+void RingOrder::recall()
+{
+  remembered_.resize(std::max(remembered_.size(), rings_.size()));
+  for (std::size_t i = 0; i < rings_.size(); ++i)
+  {
+    if (rings_[i].count > 0)
+      remembered_[i] = rings_[i];
+    else
+      rings_[i] = remembered_[i];
+  }
+}
+
+void RingOrder::lookAlong(const Eigen::Vector3d& axis)
+{
+  scatter_ = 0.0;
+  seen_ = 0;
+  for (Ring& ring : rings_)
+  {
+    if (ring.count == 0) continue;
+    ring.mean = axis.dot(ring.sum) / ring.count;
+    ring.variance = std::max(0.0, axis.dot(ring.sum_of_products * axis) / ring.count - ring.mean * ring.mean);
+    scatter_ += std::sqrt(ring.variance);
+    ++seen_;
+  }
+  if (seen_ > 0) scatter_ /= seen_;
+  countSteps();
 }
 
 void RingOrder::countSteps()
 {
   falls_ = rises_ = 0;
-  largest_fall_ = largest_rise_ = 0.0;
+  largest_fall_ = largest_rise_ = lowest_ = highest_ = 0.0;
   const Ring* last = nullptr;
   for (const Ring& ring : rings_)
   {
     if (ring.count == 0) continue;
-    const double mean = ring.mean();
-    if (last == nullptr) lowest_ = highest_ = mean;
-    lowest_ = std::min(lowest_, mean), highest_ = std::max(highest_, mean);
+    if (last == nullptr) lowest_ = highest_ = ring.mean;
+    lowest_ = std::min(lowest_, ring.mean), highest_ = std::max(highest_, ring.mean);
     if (last != nullptr)
     {
-      const double step = mean - last->mean();
+      const double step = ring.mean - last->mean;
       falls_ += step<0.0, rises_ += step> 0.0;
       largest_fall_ = std::max(largest_fall_, -step), largest_rise_ = std::max(largest_rise_, step);
     }
     last = &ring;
   }
+}
+
+/// Directions along one ring have one elevation over the sensor's axis: that along which they vary least within rings.
+Eigen::Vector3d RingOrder::axisOfRings() const
+{
+  Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
+  for (const Ring& ring : rings_)
+    if (ring.count > 0) within += ring.sum_of_products - ring.sum * ring.sum.transpose() / ring.count;
+  Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(within).eigenvectors().col(0);
+  return axis.z() < 0.0 ? Eigen::Vector3d(-axis) : axis;
 }
 
 bool RingOrder::isMonotone() const
@@ -66,15 +112,39 @@ bool RingOrder::isMonotone() const
 /// The mean scatter within a ring against the spacing of the rings.
 bool RingOrder::canBeSorted() const
 {
-  double scatter = 0.0;
-  int seen = 0;
+  return seen_ > 1 && scatter_ < 0.5 * (highest_ - lowest_) / (seen_ - 1);
+}
+
+bool RingOrder::areDistinct() const
+{
+  constexpr double kLeastSpacing = 5e-4;  // 0.03 degrees, a third of the finest sensor's
+  if (!canBeSorted()) return false;
+  sorted_.clear();
+  for (const Ring& ring : rings_)
+    if (ring.count > 0) sorted_.push_back(ring.mean);
+  std::sort(sorted_.begin(), sorted_.end());
+  std::size_t apart = 0;
+  for (std::size_t i = 1; i < sorted_.size(); ++i)
+    apart += sorted_[i] - sorted_[i - 1] > std::max(kLeastSpacing, scatter_);
+  return 5 * apart >= 4 * (sorted_.size() - 1);
+}
+
+bool RingOrder::tellsNothing() const
+{
+  constexpr std::uint32_t kFewest = 200;
+  constexpr double kNoVariance = 4e-4;  // of the sine, squared: a degree
+  double within = 0.0, sum = 0.0, sum_of_squares = 0.0;
+  std::uint32_t count = 0;
   for (const Ring& ring : rings_)
   {
-    if (ring.count == 0) continue;
-    scatter += std::sqrt(std::max(0.0, ring.sum_of_squares / ring.count - ring.mean() * ring.mean()));
-    ++seen;
+    within += ring.variance * ring.count;
+    sum += ring.mean * ring.count;
+    sum_of_squares += (ring.variance + ring.mean * ring.mean) * ring.count;
+    count += ring.count;
   }
-  return seen > 1 && scatter / seen < 0.5 * (highest_ - lowest_) / (seen - 1);
+  if (seen_ < 2 || count < kFewest || count < 4 * static_cast<std::uint32_t>(seen_)) return false;
+  const double whole = sum_of_squares / count - (sum / count) * (sum / count);
+  return whole > kNoVariance && within / count > 0.95 * whole;
 }
 
 void RingOrder::sortByElevation()
@@ -82,7 +152,7 @@ void RingOrder::sortByElevation()
   elevation_.resize(rings_.size());
   double before = highest_;
   for (std::size_t ring = 0; ring < rings_.size(); ++ring)
-    before = elevation_[ring] = rings_[ring].count > 0 ? rings_[ring].mean() : before;
+    before = elevation_[ring] = rings_[ring].count > 0 ? rings_[ring].mean : before;
   ring_of_row_.resize(rings_.size());
   std::iota(ring_of_row_.begin(), ring_of_row_.end(), 0U);
   std::sort(ring_of_row_.begin(), ring_of_row_.end(),

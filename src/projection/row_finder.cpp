@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <stdexcept>
 #include <string>
 
@@ -14,10 +15,24 @@ namespace
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kFullTurn = 6.28318530717958648;
 constexpr std::uint32_t kMinColumns = 16, kMaxColumns = 16384;
+
+/// A small angle given by its sine.
+std::string degrees(double sine)
+{
+  return std::to_string(std::lround(1800.0 / kFullTurn * 2.0 * sine) / 10) + '.' +
+         std::to_string(std::lround(1800.0 / kFullTurn * 2.0 * sine) % 10) + " degrees";
+}
 }  // namespace
 
+std::uint32_t RowFinder::beamsOf(std::uint32_t highest)
+{
+  for (const std::uint32_t beams : {16U, 32U, 40U, 64U, 80U, 128U})
+    if (highest < beams) return beams;
+  return highest + 1;
+}
+
 std::uint32_t RowFinder::byRing(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& ring_of_point,
-                                std::uint32_t rows)
+                                std::uint32_t rows, std::uint32_t least)
 {
   const std::uint32_t limit = rows > 0 ? rows : kMaxRings;
   std::uint32_t highest = 0;
@@ -28,32 +43,74 @@ std::uint32_t RowFinder::byRing(const std::vector<ScanPoint>& scan, const std::v
   directions_.resize(scan.size());
   for (std::size_t i = 0; i < scan.size(); ++i)
     directions_[i] = {hasDirection(scan[i]) ? fastAzimuth(scan[i].x, scan[i].y) : kNaN, ring_of_point[i]};
-  const std::uint32_t rings = rows > 0 ? rows : highest + 1;
-  orderRings(scan, rings);
+  const std::uint32_t rings = rows > 0 ? rows : std::max(least, beamsOf(highest));
+  orderRings(scan, rings, true);
+  if (order_.tellsNothing())
+    throw std::invalid_argument("expected points of one ring to have one elevation, found that it varies by " +
+                                degrees(order_.scatterRad()) + " within a ring, as much as in the whole cloud");
   return rings;
 }
 
 std::uint32_t RowFinder::byBeam(const std::vector<ScanPoint>& scan, const BeamTable& beams)
 {
+  // a quarter where points lie anywhere, a tenth where each beam is a fifth of a degree off at 2 degrees' spacing
+  constexpr double kMostMisfit = 0.17;
+  constexpr std::size_t kFewest = 100;
   directions_.resize(scan.size());
+  double misfit = 0.0;
+  std::size_t looked_at = 0;
   for (std::size_t i = 0; i < scan.size(); ++i)
   {
     const ScanPoint& p = scan[i];
     const float squared_range = p.x * p.x + p.y * p.y + p.z * p.z;
     directions_[i] = {kNaN, 0};
-    if (hasDirection(p)) directions_[i] = {fastAzimuth(p.x, p.y), beams.nearest(p.z / std::sqrt(squared_range))};
+    if (!hasDirection(p)) continue;
+    const float sine = p.z / std::sqrt(squared_range);
+    directions_[i] = {fastAzimuth(p.x, p.y), beams.nearest(sine)};
+    if (i % 13 == 0) misfit += beams.misfit(sine, directions_[i].row), ++looked_at;
   }
+  if (looked_at >= kFewest && misfit > kMostMisfit * static_cast<double>(looked_at))
+    throw std::invalid_argument(
+        "expected points at the elevations of the sensor's beams, found them " +
+        std::to_string(std::lround(100.0 * misfit / static_cast<double>(looked_at))) +
+        " % of the beams' spacing away in the mean: another sensor, or a frame that is not the sensor's own");
   return beams.rows();
 }
 
-std::uint32_t RowFinder::byUnfolding(const std::vector<ScanPoint>& scan, std::uint32_t rows)
+std::uint32_t RowFinder::byUnfolding(const std::vector<ScanPoint>& scan, std::uint32_t rows, std::uint32_t least,
+                                     std::optional<Sweep>& sweep)
 {
-  unfolded_rings_ = unfoldScan(scan, directions_);
-  const std::uint32_t rings = std::min(rows > 0 ? rows : std::max(1U, unfolded_rings_), kMaxRings);
-  if (unfolded_rings_ > rings)
-    for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rings - 1);
-  orderRings(scan, rings);
-  return rings;
+  const auto tryWith = [&](const Sweep& with)
+  {
+    unfold(scan, with);
+    const std::uint32_t found = std::max({1U, least, unfolded_rings_});
+    const std::uint32_t rings = std::min(rows > 0 ? rows : found, kMaxRings);
+    if (unfolded_rings_ > rings)
+      for (PointDirection& direction : directions_) direction.row = std::min(direction.row, rings - 1);
+    orderRings(scan, rings, false);
+    return rings;
+  };
+  if (sweep)
+    if (const std::uint32_t rings = tryWith(*sweep); cameRingAfterRing(rows)) return rings;
+  sweep = sweeps_.find(scan);
+  return tryWith(sweep.value_or(Sweep()));
+}
+
+void RowFinder::unfold(const std::vector<ScanPoint>& scan, const Sweep& sweep)
+{
+  unfolded_rings_ = unfoldScan(scan, sweep, directions_);
+  elevation_steps_ = 0;
+  const ScanPoint* last = nullptr;
+  std::uint32_t ring = 0;
+  const auto sine = [](const ScanPoint& p) { return p.z / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); };
+  for (std::size_t i = 0; i < scan.size(); ++i)
+  {
+    if (std::isnan(directions_[i].azimuth)) continue;
+    if (directions_[i].row != ring && last != nullptr)
+      elevation_steps_ += std::abs(sine(scan[i]) - sine(*last)) > kElevationStep;
+    last = &scan[i];
+    ring = directions_[i].row;
+  }
 }
 
 bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
@@ -62,12 +119,13 @@ bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
   const std::uint32_t rings = unfolded_rings_;
   if (rings < 2 || rings > kMostRings) return false;
   if (rows > 0 && (rings > rows || 2 * rings < rows)) return false;
-  return order_.isMonotone();
+  if (5 * elevation_steps_ < 4 * (rings - 1)) return false;
+  return order_.isMonotone() || order_.areDistinct();
 }
 
-void RowFinder::orderRings(const std::vector<ScanPoint>& scan, std::uint32_t rings)
+void RowFinder::orderRings(const std::vector<ScanPoint>& scan, std::uint32_t rings, bool remember)
 {
-  order_.look(scan, directions_, rings);
+  order_.look(scan, directions_, rings, remember);
   const auto& row_of_ring = order_.rowOfRing();
   if (std::is_sorted(row_of_ring.begin(), row_of_ring.end())) return;
   for (PointDirection& direction : directions_) direction.row = row_of_ring[direction.row];
@@ -83,7 +141,7 @@ std::uint32_t RowFinder::fullestRow()
   return static_cast<std::uint32_t>(fullest - returns_of_row_.begin());
 }
 
-std::uint32_t RowFinder::columnsOfTurn()
+double RowFinder::firingsOfTurn()
 {
   const std::uint32_t row = fullestRow();
   azimuths_.clear();
@@ -95,12 +153,35 @@ std::uint32_t RowFinder::columnsOfTurn()
   std::size_t gaps = 0;
   for (std::size_t i = 1; i < azimuths_.size(); ++i)
     if (const float gap = azimuths_[i] - azimuths_[i - 1]; gap > kSmallestGap) azimuths_[gaps++] = gap;
-  if (gaps == 0) return kMinColumns;
+  if (gaps == 0) return 0.0;
   const auto middle = azimuths_.begin() + static_cast<std::ptrdiff_t>(gaps / 2);
   std::nth_element(azimuths_.begin(), middle, azimuths_.begin() + static_cast<std::ptrdiff_t>(gaps));
-  const double firings = kFullTurn / *middle;
+  return kFullTurn / *middle;
+}
+
+std::uint32_t RowFinder::columnsFor(double firings)
+{
   std::uint32_t columns = kMinColumns;
   while (columns < 0.9 * firings && columns < kMaxColumns) columns *= 2;
   return columns;
+}
+
+float RowFinder::columnShift(std::uint32_t columns) const
+{
+  constexpr std::size_t kPoints = 1024;
+  const std::size_t step = (directions_.size() / kPoints) | 1U;
+  const float columns_per_radian = static_cast<float>(columns / kFullTurn);
+  float from_middle = 0.0F;
+  std::size_t count = 0;
+  for (std::size_t i = 0; i < directions_.size(); i += step)
+  {
+    const float azimuth = directions_[i].azimuth;
+    if (std::isnan(azimuth)) continue;
+    const float column = (0.5F * static_cast<float>(kFullTurn) - azimuth) * columns_per_radian;
+    from_middle += std::abs(column - std::floor(column) - 0.5F);
+    ++count;
+  }
+  // a quarter where the azimuths lie anywhere, a half where they lie on borders
+  return from_middle > 0.35F * static_cast<float>(count) ? 0.5F : 0.0F;
 }
 }  // namespace lidar_panoptic_clustering

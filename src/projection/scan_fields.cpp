@@ -13,12 +13,17 @@ struct UsualNames
 {
   const char* parameter;
   const char* content;
-  std::array<const char*, 4> names;  ///< null for none
+  std::array<const char*, 13> names;  ///< null for none
 };
 
-// Autoware: class_id; ouster-ros: reflectivity; SemanticKITTI: remission; hesai, robosense and ouster-ros: ring
+// Autoware: class_id; ouster-ros and Livox: reflectivity; SemanticKITTI: remission; kitti2bag: i; SICK: intensities;
+// hesai, robosense and ouster-ros: ring
 constexpr UsualNames kLabel = {"label_field", "class ids", {"label", "class_id", "semantic", "class"}};
-constexpr UsualNames kIntensity = {"intensity_field", "intensities", {"intensity", "reflectivity", "remission"}};
+constexpr UsualNames kIntensity = {"intensity_field",
+                                   "intensities",
+                                   {"intensity", "reflectivity", "remission", "i", "intensities", "reflectance",
+                                    "remissions", "Intensity", "Reflectivity", "Remission", "Reflectance", "I",
+                                    "INTENSITY"}};
 constexpr UsualNames kRing = {"ring_field", "ring numbers", {"ring", "channel"}};
 
 const RawField* find(const RawCloud& cloud, const char* name)

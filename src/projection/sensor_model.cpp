@@ -1,5 +1,6 @@
 #include "lidar_panoptic_clustering/projection/sensor_model.h"
 
+#include "core/plain_numbers.h"
 #include "core/yaml_source.h"
 #include "shipped_files.h"
 
@@ -7,8 +8,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
-#include <sstream>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -16,15 +15,10 @@ namespace lidar_panoptic_clustering
 namespace
 {
 constexpr double kPi = 3.14159265358979323846;
-constexpr double kAlmostNothing = 1e-6;  // [rad]: far less than a column
+constexpr double kAlmostNothing = 1e-6;                 // [rad]: far less than a column
+constexpr double kLeastFov = 0.1 * kPi / 180.0 - 1e-9;  // [rad]
 constexpr std::uint32_t kMaxRows = 4096, kMaxColumns = 65536;
-
-std::string text(double value)
-{
-  std::ostringstream out;
-  out << value;
-  return out.str();
-}
+constexpr float kMaxRange = 10000.0F, kMaxNoise = 100.0F, kLeastHeight = 0.01F, kMaxHeight = 1000.0F;  // [m]
 
 /// Reads one sensor file; `source` begins each message.
 class SensorReader
@@ -43,7 +37,7 @@ public:
     const auto elevations = required<std::vector<double>>("elevations_deg", "a list of angles, the highest first");
     std::transform(elevations.begin(), elevations.end(), std::back_inserter(model.elevations_rad),
                    [](double degrees) { return static_cast<float>(degrees * kPi / 180.0); });
-    model.columns = required<std::uint32_t>("columns", "the number of firings");
+    model.columns = readColumns();
     double fov_deg = 360.0;
     optional("horizontal_fov_deg", "an angle", fov_deg);
     model.horizontal_fov_rad = fov_deg * kPi / 180.0;
@@ -57,6 +51,15 @@ public:
   }
 
 private:
+  std::uint32_t readColumns()
+  {
+    const auto columns = required<std::int64_t>("columns", "the number of firings");
+    if (columns < 1 || columns > kMaxColumns)
+      throw std::invalid_argument(source_ + ": columns: expected 1 to " + std::to_string(kMaxColumns) + ", found " +
+                                  std::to_string(columns));
+    return static_cast<std::uint32_t>(columns);
+  }
+
   template <class T>
   T required(const std::string& key, const std::string& expected)
   {
@@ -72,15 +75,8 @@ private:
     known_.push_back(key);
     const YAML::Node node = root_[key];
     if (!node) return;
-    try
-    {
-      value = node.as<T>();
-    }
-    catch (const YAML::Exception&)
-    {
-      throw std::invalid_argument(source_ + ": '" + key + "': expected " + expected + ", found " +
-                                  YAML::Dump(node).substr(0, 60));
-    }
+    if (!readYaml(node, value))
+      throw std::invalid_argument(source_ + ": '" + key + "': expected " + expected + ", found " + describeYaml(node));
   }
 
   void refuseOtherKeys() const
@@ -139,11 +135,12 @@ void validateSensorModel(const SensorModel& model, const std::string& source)
   const auto require = [&source](bool holds, const std::string& member, const std::string& expected, double value)
   {
     if (!holds)
-      throw std::invalid_argument(source + ": " + member + ": expected " + expected + ", found " + text(value));
+      throw std::invalid_argument(source + ": " + member + ": expected " + expected + ", found " + shortText(value));
   };
   const auto degrees = [](double radians) { return radians * 180.0 / kPi; };
 
-  require(model.rows() > 0 && model.rows() <= kMaxRows, "number of elevations", "1 to " + text(kMaxRows), model.rows());
+  require(model.rows() > 0 && model.rows() <= kMaxRows, "number of elevations", "1 to " + shortText(kMaxRows),
+          model.rows());
   for (std::size_t i = 0; i < model.elevations_rad.size(); ++i)
   {
     const float elevation = model.elevations_rad[i];
@@ -151,19 +148,20 @@ void validateSensorModel(const SensorModel& model, const std::string& source)
     require(std::abs(elevation) < kPi / 2, member, "an angle between -90 and 90 degrees", degrees(elevation));
     if (i == 0) continue;
     const float above = model.elevations_rad[i - 1];
-    require(elevation < above, member, "less than the ring's before, " + text(degrees(above)), degrees(elevation));
+    require(elevation < above, member, "less than the ring's before, " + shortText(degrees(above)), degrees(elevation));
   }
-  require(model.columns > 0 && model.columns <= kMaxColumns, "columns", "1 to " + text(kMaxColumns), model.columns);
+  require(model.columns > 0 && model.columns <= kMaxColumns, "columns", "1 to " + shortText(kMaxColumns),
+          model.columns);
   const double fov = model.horizontal_fov_rad;
-  require(fov > 0.0 && fov <= 2.0 * kPi + kAlmostNothing, "horizontal field of view", "above 0 and at most 360 degrees",
+  require(fov >= kLeastFov && fov <= 2.0 * kPi + kAlmostNothing, "horizontal field of view", "0.1 to 360 degrees",
           degrees(fov));
   require(model.min_range_m >= 0.0F, "min_range_m", "0 or more", model.min_range_m);
-  require(model.max_range_m > model.min_range_m && std::isfinite(model.max_range_m), "max_range_m",
-          "finite and more than min_range_m", model.max_range_m);
-  require(model.range_noise_m >= 0.0F && std::isfinite(model.range_noise_m), "range_noise_m", "0 or more",
+  require(model.max_range_m > model.min_range_m && model.max_range_m <= kMaxRange, "max_range_m",
+          "more than min_range_m and at most 10000", model.max_range_m);
+  require(model.range_noise_m >= 0.0F && model.range_noise_m <= kMaxNoise, "range_noise_m", "0 to 100",
           model.range_noise_m);
   require(model.dropout >= 0.0F && model.dropout <= 1.0F, "dropout", "a probability", model.dropout);
-  require(model.mount_height_m > 0.0F && std::isfinite(model.mount_height_m), "mount_height_m", "more than 0",
+  require(model.mount_height_m >= kLeastHeight && model.mount_height_m <= kMaxHeight, "mount_height_m", "0.01 to 1000",
           model.mount_height_m);
 }
 }  // namespace lidar_panoptic_clustering

@@ -2,6 +2,8 @@
 
 #include "lidar_panoptic_clustering/projection/scan_fields.h"
 
+#include <algorithm>
+#include <array>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -11,16 +13,14 @@ namespace
 struct Encoding
 {
   const char* name;
-  NumberType type;  ///< signed ids are read as bits and judged after their bytes are in order
-  std::uint32_t bytes;
-  bool is_signed;
+  NumberType type;
 };
 
-constexpr Encoding kEncodings[] = {{"mono8", NumberType::kUint8, 1, false},
-                                   {"8UC1", NumberType::kUint8, 1, false},
-                                   {"mono16", NumberType::kUint16, 2, false},
-                                   {"16UC1", NumberType::kUint16, 2, false},
-                                   {"32SC1", NumberType::kUint32, 4, true}};
+/// Of sensor_msgs/image_encodings; unsigned 32-bit numbers have none.
+constexpr Encoding kEncodings[] = {
+    {"mono8", NumberType::kUint8},   {"8UC1", NumberType::kUint8},    {"8SC1", NumberType::kInt8},
+    {"mono16", NumberType::kUint16}, {"16UC1", NumberType::kUint16},  {"16SC1", NumberType::kInt16},
+    {"32SC1", NumberType::kInt32},   {"32FC1", NumberType::kFloat32}, {"64FC1", NumberType::kFloat64}};
 
 [[noreturn]] void fail(const std::string& expected, const std::string& found)
 {
@@ -43,10 +43,19 @@ const Encoding& encodingOf(const RawImage& image)
   fail("a label image of encoding " + names, "'" + image.encoding + "'");
 }
 
-std::uint32_t swapBytes(std::uint32_t value, std::uint32_t bytes)
+/// Reads `count` ids of the other byte order.
+void readSwapped(const std::uint8_t* from, const RawField& field, std::size_t count, std::uint32_t* ids)
 {
-  if (bytes == 2) return (value & 0xFFU) << 8U | value >> 8U;
-  return value << 24U | (value & 0xFF00U) << 8U | (value >> 8U & 0xFF00U) | value >> 24U;
+  constexpr std::size_t kRun = 128;
+  std::array<std::uint8_t, kRun * sizeof(double)> swapped;
+  const std::size_t bytes = bytesOfType(field.datatype);
+  for (std::size_t begin = 0; begin < count; begin += kRun)
+  {
+    const std::size_t run = std::min(kRun, count - begin);
+    for (std::size_t i = 0; i < run; ++i)
+      std::reverse_copy(from + (begin + i) * bytes, from + (begin + i + 1) * bytes, &swapped[i * bytes]);
+    readIds({swapped.data(), bytes, run}, field, ids + begin, sizeof(std::uint32_t));
+  }
 }
 }  // namespace
 
@@ -56,7 +65,9 @@ void readLabelImage(const RawImage& image, std::uint32_t rows, std::uint32_t col
   const Encoding& encoding = encodingOf(image);
   if (image.height != rows || image.width != columns)
     fail("a label image of the range image's " + size(rows, columns), size(image.height, image.width));
-  const std::uint64_t row_bytes = std::uint64_t{image.width} * encoding.bytes;
+  const RawField whole_pixel{"id", 0, static_cast<std::uint8_t>(encoding.type), 1};
+  const std::uint32_t bytes = bytesOfType(whole_pixel.datatype);
+  const std::uint64_t row_bytes = std::uint64_t{image.width} * bytes;
   const std::uint64_t all_bytes = std::uint64_t{image.height} * image.step;
   if (image.step < row_bytes)
     fail("a label image whose step is at least " + std::to_string(row_bytes) + " bytes", std::to_string(image.step));
@@ -64,15 +75,15 @@ void readLabelImage(const RawImage& image, std::uint32_t rows, std::uint32_t col
     fail("a label image with height * step = " + std::to_string(all_bytes) + " bytes", std::to_string(image.data_size));
 
   label_of_pixel.resize(std::size_t{rows} * columns);
-  const RawField whole_pixel{"id", 0, static_cast<std::uint8_t>(encoding.type), 1};
   for (std::size_t row = 0; row < rows; ++row)
-    readIds({image.data + row * image.step, encoding.bytes, columns}, whole_pixel,
-            label_of_pixel.data() + row * columns, sizeof(std::uint32_t));
-  if (image.is_bigendian && encoding.bytes > 1)
-    for (std::uint32_t& label : label_of_pixel) label = swapBytes(label, encoding.bytes);
-  if (encoding.is_signed)
-    for (std::uint32_t& label : label_of_pixel)
-      if (label > 0x7FFFFFFFU) label = kUnreadableLabel;
+  {
+    const std::uint8_t* from = image.data + row * image.step;
+    std::uint32_t* ids = label_of_pixel.data() + row * columns;
+    if (image.is_bigendian)
+      readSwapped(from, whole_pixel, columns, ids);
+    else
+      readIds({from, bytes, columns}, whole_pixel, ids, sizeof(std::uint32_t));
+  }
 }
 
 void readLabelCloud(const RawCloud& labels, const std::string& label_field, const RawCloud& cloud,

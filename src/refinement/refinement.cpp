@@ -17,6 +17,7 @@ Refinement::Refinement(std::shared_ptr<const ClassTable> table, const Refinement
     : table_(std::move(table)), config_(config)
 {
   validateParameters(config_);
+  requireOffOrDistance("bridge_distance_m", config_.bridge_distance_m, 10.0);
 }
 
 void Refinement::refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances)

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "core/printable.h"
+
 #include <fstream>
 #include <iostream>
 #include <stdexcept>
@@ -19,7 +21,7 @@ public:
     if (!file_) throw std::runtime_error("cannot write the report to '" + path + "'");
   }
 
-  void print(const std::string& text) { (file_.is_open() ? file_ : std::cout) << text << std::flush; }
+  void print(const std::string& text) { (file_.is_open() ? file_ : std::cout) << printable(text) << std::flush; }
 
 private:
   std::ofstream file_;

@@ -1,5 +1,9 @@
 #include "reporting/stage_message.h"
 
+#include "core/plain_numbers.h"
+
+#include <optional>
+
 namespace lidar_panoptic_clustering
 {
 namespace
@@ -10,12 +14,21 @@ bool endsWithUnit(const std::string& key)
 {
   return key.size() > kUnit.size() && key.compare(key.size() - kUnit.size(), kUnit.size(), kUnit) == 0;
 }
+/// A value of 0 or more; nothing for text that is none: a message may come from anywhere, and an exception in its
+/// callback would end the whole manager.
+std::optional<double> numberIn(const diagnostic_msgs::KeyValue& pair)
+{
+  constexpr double kMost = 1e9;
+  const auto number = parseNumber(pair.value);
+  return number && *number >= 0.0 && *number <= kMost ? number : std::nullopt;
+}
 }  // namespace
 
 diagnostic_msgs::DiagnosticStatus stageMessage(const std::string& nodelet, const std::string& algorithm,
                                                std::size_t things, std::size_t instances,
                                                const StreamDiagnostics::StageMilliseconds& stages)
 {
+  const PlainNumbers plain;
   diagnostic_msgs::DiagnosticStatus status;
   status.name = nodelet;
   status.hardware_id = algorithm;
@@ -23,7 +36,7 @@ diagnostic_msgs::DiagnosticStatus stageMessage(const std::string& nodelet, const
   {
     status.values.emplace_back();
     status.values.back().key = key;
-    status.values.back().value = std::to_string(value);
+    status.values.back().value = std::to_string(value);  // milliseconds with six decimals
   };
   add("things", things);
   add("instances", instances);
@@ -36,10 +49,12 @@ FrameFigures readStageMessage(const diagnostic_msgs::DiagnosticStatus& status)
   FrameFigures figures;
   for (const auto& pair : status.values)
   {
-    if (pair.key == "things") figures.things = std::stoul(pair.value);
-    if (pair.key == "instances") figures.instances = std::stoul(pair.value);
+    const auto number = numberIn(pair);
+    if (!number) continue;
+    if (pair.key == "things") figures.things = static_cast<std::size_t>(*number);
+    if (pair.key == "instances") figures.instances = static_cast<std::size_t>(*number);
     if (endsWithUnit(pair.key))
-      figures.stages.emplace_back(pair.key.substr(0, pair.key.size() - kUnit.size()), std::stod(pair.value));
+      figures.stages.emplace_back(pair.key.substr(0, pair.key.size() - kUnit.size()), *number);
   }
   return figures;
 }

@@ -15,7 +15,6 @@ diagnostic_msgs::DiagnosticStatus stageMessage(const std::string& nodelet, const
                                                std::size_t things, std::size_t instances,
                                                const StreamDiagnostics::StageMilliseconds& stages);
 
-/// Reads it again; the stamp and the points are not in it. Throws std::logic_error's descendants for text that is no
-/// number.
+/// Reads it again; the stamp and the points are not in it. Values that are no numbers from 0 to 1e9 are left out.
 FrameFigures readStageMessage(const diagnostic_msgs::DiagnosticStatus& status);
 }  // namespace lidar_panoptic_clustering

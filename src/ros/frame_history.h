@@ -16,7 +16,8 @@ namespace lidar_panoptic_clustering
 /// A driver's cloud and what it was organised into.
 struct OrganizedFrame
 {
-  std::uint64_t stamp = 0;  ///< [us]
+  std::uint64_t stamp = 0;   ///< [us]
+  double organize_ms = 0.0;  ///< what the first step took
   sensor_msgs::PointCloud2ConstPtr message;
   OrganizedScan scan;
 };
@@ -65,7 +66,29 @@ public:
     return frame;
   }
 
-  /// Frees all but one frame's buffers.
+  /// Keeps a frame that was organised before its labels came, apart from the others; of these the newest `kept`.
+  void keepEarly(FramePtr frame, std::size_t kept)
+  {
+    early_.push_back(std::move(frame));
+    forgetEarly(kept);
+  }
+  void forgetEarly(std::size_t kept = 0)
+  {
+    for (; early_.size() > kept; early_.pop_front()) recycle(std::move(early_.front()));
+  }
+  /// The one of that message, those before it are let go; or a frame to be filled.
+  FramePtr takeEarly(const sensor_msgs::PointCloud2ConstPtr& message)
+  {
+    const auto is_of = [&message](const FramePtr& frame) { return frame->message == message; };
+    const auto found = std::find_if(early_.begin(), early_.end(), is_of);
+    if (found == early_.end()) return make();
+    forgetEarly(static_cast<std::size_t>(early_.end() - found));
+    FramePtr frame = std::move(early_.front());
+    early_.pop_front();
+    return frame;
+  }
+
+  /// Frees all but one frame's buffers of those that are not early.
   void clear()
   {
     recycleFirst(kept_.size());
@@ -83,7 +106,7 @@ private:
   }
 
   std::size_t capacity_;
-  std::deque<FramePtr> kept_;  ///< oldest first
+  std::deque<FramePtr> kept_, early_;  ///< oldest first
   std::vector<FramePtr> spare_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <locale>
 #include <sstream>
 
 namespace lidar_panoptic_clustering
@@ -52,6 +53,7 @@ std::uint64_t LabelMatcher::takeDropped()
 std::string LabelMatcher::describeLack(const std::string& labels_topic) const
 {
   std::ostringstream text;
+  text.imbue(std::locale::classic());
   text << "expected labels on " << labels_topic << " with a stamp at most " << tolerance_
        << " us from the cloud's, before " << queue_size_
        << " more clouds and before a later cloud's labels; found clouds up to stamp " << newest_cloud_ << " and ";

@@ -2,6 +2,7 @@
 
 #include <xmlrpcpp/XmlRpcValue.h>
 
+#include <locale>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -51,6 +52,7 @@ ParameterValue convert(const std::string& full_name, XmlRpc::XmlRpcValue& raw, c
   if (std::holds_alternative<std::string>(expected) && type == XmlRpcValue::TypeString)
     return static_cast<std::string&>(raw);
   std::ostringstream message;
+  message.imbue(std::locale::classic());
   message << "parameter " << full_name << ": expected " << expectedType(expected) << ", got " << typeName(type) << ' '
           << raw;
   throw std::invalid_argument(message.str());

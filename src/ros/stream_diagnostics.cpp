@@ -1,5 +1,7 @@
 #include "ros/stream_diagnostics.h"
 
+#include "core/plain_numbers.h"
+
 #include <algorithm>
 
 namespace lidar_panoptic_clustering
@@ -54,6 +56,12 @@ void StreamDiagnostics::setFigure(const std::string& name, std::uint64_t value)
   figures_[name] = value;
 }
 
+void StreamDiagnostics::setWarning(const std::string& warning)
+{
+  const std::lock_guard<std::mutex> lock(mutex_);
+  warning_ = warning;
+}
+
 bool StreamDiagnostics::noteError(const std::string& error)
 {
   last_error_ = error;
@@ -73,6 +81,8 @@ void StreamDiagnostics::summarize(diagnostic_updater::DiagnosticStatusWrapper& s
     status.summary(processed == 0 ? Level::ERROR : Level::WARN, "scans dropped: " + last_error_);
   else if (counts_.overwritten - reported_.overwritten > processed)
     status.summary(Level::WARN, "slower than the scans come: more than half of them dropped");
+  else if (!warning_.empty() && processed > 0)
+    status.summary(Level::WARN, warning_);
   else
     status.summary(Level::OK, processed > 0 ? "processing scans" : "no scans: no input, or nobody listens");
 }
@@ -85,14 +95,15 @@ void StreamDiagnostics::report(diagnostic_updater::DiagnosticStatusWrapper& stat
   const std::uint64_t processed = counts_.processed - reported_.processed;
   summarize(status);
 
+  const PlainNumbers plain;
   status.addf("rate [Hz]", "%.2f", seconds > 0.0 ? static_cast<double>(processed) / seconds : 0.0);
   for (std::size_t i = 0; i < sums_.size() && processed > 0; ++i)
     status.addf(sums_[i].first + " [ms]", "mean %.3f, longest %.3f", sums_[i].second / static_cast<double>(processed),
                 longest_[i].second);
-  status.add("scans processed", counts_.processed);
-  status.add("scans dropped", counts_.overwritten + counts_.lacking);
-  status.add("scans refused", counts_.refused);
-  for (const auto& [name, value] : figures_) status.add(name, value);
+  status.add("scans processed", std::to_string(counts_.processed));
+  status.add("scans dropped", std::to_string(counts_.overwritten + counts_.lacking));
+  status.add("scans refused", std::to_string(counts_.refused));
+  for (const auto& [name, value] : figures_) status.add(name, std::to_string(value));
   status.add("last error", last_error_.empty() ? "none" : last_error_);
 
   last_report_ = now;

@@ -36,6 +36,8 @@ public:
   bool lacking(std::uint64_t count, const std::string& reason);
   /// A further number to report, from now on, under a name of the nodelet's own.
   void setFigure(const std::string& name, std::uint64_t value);
+  /// What the user should mend though scans go through; it is the message while there is nothing worse.
+  void setWarning(const std::string& warning);
 
 private:
   struct Counts
@@ -51,7 +53,7 @@ private:
   Counts counts_, reported_;  ///< since the start, and up to the last report
   StageMilliseconds sums_, longest_;
   std::map<std::string, std::uint64_t> figures_;
-  std::string last_error_;
+  std::string last_error_, warning_;
   ros::WallTime last_report_, last_logged_;
 
   std::unique_ptr<diagnostic_updater::Updater> updater_;

@@ -1,13 +1,14 @@
 #include "lidar_panoptic_clustering/scan_to_objects/scan_labeller.h"
 
-#include <cmath>
-#include <map>
+#include <algorithm>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
+constexpr std::uint32_t kLargestId = 0xFFFF;
+
 std::string labelTableName(const ScanLabellerConfig& config)
 {
   if (config.labels != "none") return config.label_table.empty() ? "semantic_kitti" : config.label_table;
@@ -16,27 +17,12 @@ std::string labelTableName(const ScanLabellerConfig& config)
                                 config.label_table + "'");
   return "object";
 }
-
-/// "24 (30512 points), 28 (9033 points)", the most frequent ones.
-std::string describeUnknown(const std::map<std::uint32_t, std::size_t>& count_of_id)
-{
-  std::multimap<std::size_t, std::uint32_t, std::greater<>> by_count;
-  for (const auto& [id, count] : count_of_id) by_count.emplace(count, id);
-  constexpr std::size_t kNamed = 5;
-  std::string text;
-  std::size_t named = 0;
-  for (const auto& [count, id] : by_count)
-  {
-    if (named++ == kNamed) break;
-    text += (text.empty() ? "" : ", ") + std::to_string(id) + " (" + std::to_string(count) + " points)";
-  }
-  return text;
-}
 }  // namespace
 
 ScanLabeller::ScanLabeller(const ScanLabellerConfig& config)
-    : max_unknown_(config.max_unknown_labels),
-      label_table_(std::make_unique<const ClassTable>(ClassTable::load(labelTableName(config)))),
+    : label_table_(std::make_shared<const ClassTable>(ClassTable::load(labelTableName(config)))),
+      numbering_(label_table_, {!config.label_table.empty(), config.max_unknown_labels, config.check_label_shapes}),
+      no_class_(ignoredId(*label_table_)),
       ground_(config.ground)
 {
   const std::string target = config.class_table.empty() ? labelTableName(config) : config.class_table;
@@ -57,15 +43,19 @@ void ScanLabeller::requireObjects() const
 
 void ScanLabeller::takeOwn(OrganizedScan& scan)
 {
-  checkTable(scan);
+  takeClasses(scan);
+  findHiddenLabels(scan);
+  numbering_.check(scan.image.cloud, hidden_labels_);
   mapIds(scan);
 }
 
 void ScanLabeller::takeImage(const RawImage& image, OrganizedScan& scan)
 {
   readLabelImage(image, scan.image.cloud.height, scan.image.cloud.width, separate_);
-  labelPixels(scan, separate_);
-  takeOwn(scan);
+  labelPixels(scan, separate_, no_class_);
+  takeClasses(scan);
+  numbering_.check(scan.image.cloud);
+  mapIds(scan);
 }
 
 void ScanLabeller::takeCloud(const RawCloud& labels, const std::string& label_field, const RawCloud& cloud,
@@ -79,31 +69,43 @@ void ScanLabeller::takeCloud(const RawCloud& labels, const std::string& label_fi
 void ScanLabeller::takeGeometry(OrganizedScan& scan, bool all)
 {
   if (scan.layout == Layout::kMerged)
-    throw std::invalid_argument("expected scan lines, as labels is 'none', found the points of several lidars merged");
+    throw std::invalid_argument("expected scan lines, as labels is 'none', found points without: layout 'merged', of a lidar "
+                                "without scan lines or of several lidars");
   ground_.label(scan.image.cloud);
   if (all) ground_.labelPoints(scan, scan.labels);
   mapIds(scan);
 }
 
-void ScanLabeller::checkTable(const OrganizedScan& scan) const
+/// Labels of a .label file lose their instances, and what is no return can be no thing.
+void ScanLabeller::takeClasses(OrganizedScan& scan)
 {
-  std::size_t labelled = 0, unknown = 0;
-  for (const LabelledPoint& point : scan.image.cloud.points)
+  std::uint32_t largest = 0;
+  for (const LabelledPoint& pixel : scan.image.cloud.points) largest = std::max(largest, pixel.label);
+  for (const std::uint32_t label : scan.labels) largest = std::max(largest, label);
+  if (largest > kLargestId)
   {
-    if (!std::isfinite(point.x) || point.label == 0) continue;  // 0: whatever the table, no class is often sent so
-    ++labelled;
-    if (label_table_->find(point.label) == kUnknownClass) ++unknown;
+    for (LabelledPoint& pixel : scan.image.cloud.points) pixel.label = classIn(pixel.label);
+    for (std::uint32_t& label : scan.labels) label = classIn(label);
   }
-  if (static_cast<double>(unknown) <= max_unknown_ * static_cast<double>(labelled)) return;
+  if (scan.organized_input || label_table_->kindOf(0) != ClassKind::kThing) return;
+  for (std::size_t i = 0; i < scan.points.size(); ++i)
+    if (!hasDirection(scan.points[i])) scan.labels[i] = no_class_;
+}
 
-  std::map<std::uint32_t, std::size_t> count_of_id;
-  for (const LabelledPoint& point : scan.image.cloud.points)
-    if (std::isfinite(point.x) && point.label != 0 && label_table_->find(point.label) == kUnknownClass)
-      ++count_of_id[point.label];
-  throw std::invalid_argument("expected class ids of the table '" + label_table_->name() +
-                              "' (parameter label_table), found that " + std::to_string(unknown) + " of " +
-                              std::to_string(labelled) +
-                              " labelled returns have others: " + describeUnknown(count_of_id));
+std::uint32_t ScanLabeller::classIn(std::uint32_t label) const
+{
+  if (label == kUnreadableLabel) return label_table_->ignoresMinusOne() ? no_class_ : label;
+  return label & kLargestId;
+}
+
+void ScanLabeller::findHiddenLabels(const OrganizedScan& scan)
+{
+  hidden_labels_.clear();
+  if (scan.organized_input) return;
+  const Projection& image = scan.image;
+  for (std::uint32_t i = 0; i < scan.points.size(); ++i)
+    if (image.owner_of_pixel[image.pixel_of_point[i]] != i && hasDirection(scan.points[i]))
+      hidden_labels_.push_back(scan.labels[i]);
 }
 
 void ScanLabeller::mapIds(OrganizedScan& scan) const

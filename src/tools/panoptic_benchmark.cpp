@@ -1,4 +1,4 @@
-#include "tools/support/aside_file.h"
+#include "core/aside_file.h"
 #include "tools/support/benchmark_charts.h"
 #include "tools/support/benchmark_figure.h"
 #include "tools/support/program.h"
@@ -119,7 +119,7 @@ std::vector<BenchmarkReport> loadReports(const Given& given, const char* option)
   std::vector<BenchmarkReport> reports;
   for (const std::string& path : listOf(given, option))
   {
-    const std::string text = readTextFile(path);
+    const std::string text = readTextFile(path, kMaxReport);
     const bool table_given = isGiven(given, "class-table");
     const std::string name = table_given ? textOf(given, "class-table") : BenchmarkReport::classTableOf(text, path);
     const auto table = std::make_shared<const ClassTable>(ClassTable::load(name));

@@ -1,4 +1,4 @@
-#include "tools/support/aside_file.h"
+#include "core/aside_file.h"
 #include "tools/support/evaluate_predictions.h"
 #include "tools/support/program.h"
 
@@ -69,7 +69,7 @@ EvaluationReport merge(const Given& given)
   std::optional<EvaluationReport> sum;
   for (const std::string& path : listOf(given, "merge"))
   {
-    const std::string text = readTextFile(path);
+    const std::string text = readTextFile(path, kMaxReport);
     const auto table = loadTable(isGiven(given, "class-table") ? textOf(given, "class-table")
                                                                : EvaluationReport::classTableOf(text, path));
     auto report = EvaluationReport::fromJsonText(text, path, table);

@@ -1,6 +1,8 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
 #include <filesystem>
 #include <fstream>
@@ -104,8 +106,11 @@ TEST(ClassTable, NamesFileAndClassInEachError)
             in_car + ": has no 'ids', expected a list of raw ids");
   EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [], color: [1, 2, 3]}"),
             in_car + ": ids is empty, expected at least one raw id");
-  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [-1], color: [1, 2, 3]}"),
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [-1], color: [1, 2, 3]}"), in_car + ": id -1 is below 0");
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [1.5], color: [1, 2, 3]}"),
             in_car + ": 'ids' must be a list of raw ids");
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [5, 10, 5], color: [1, 2, 3]}"),
+            in_car + ": id 5 is there twice");
   EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: 10, color: [1, 2, 3]}"),
             in_car + ": 'ids' must be a list of raw ids");
   EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [65536], color: [1, 2, 3]}"),
@@ -124,7 +129,7 @@ TEST(ClassTable, NamesFileAndClassInEachError)
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2]}"),
             in_car + ": has no 'link', expected a distance in metres");
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2], link: 0}"),
-            in_car + ": link must be above 0 m");
+            in_car + ": link must be from 0.05 to 100 m, found 0");
   EXPECT_EQ(errorOfClasses("{name: car, kind: thing, ids: [10], color: [1, 2, 3], size: [4, 2], link: wide}"),
             in_car + ": 'link' must be a distance in metres");
   EXPECT_EQ(errorOfClasses(car + ", " + car), in_car + " is there twice");
@@ -138,6 +143,35 @@ TEST(ClassTable, NamesFileAndClassInEachError)
   EXPECT_EQ(errorOfClasses(road + "[way]}, {name: path, kind: stuff, ids: [5], color: [1, 2, 3], aliases: [way]}"),
             "my.yaml: class 'path': alias 'way' already belongs to class 'road'");
   EXPECT_EQ(errorOfClasses("car"), "my.yaml: class 1 has no 'name'");
+}
+
+/// What the algorithms' grids hold; a cell of nothing, or of a light-year, is none.
+TEST(ClassTable, NumbersHaveARange)
+{
+  const std::string head = "{name: car, kind: thing, ids: [10], color: [1, 2, 3], ";
+  const std::string in_car = "my.yaml: class 'car': ";
+  for (const char* link : {"1e-30", "0.049", "100.5", "1e30", "1e300", ".inf", "-.inf", ".nan", "-1"})
+    EXPECT_EQ(errorOfClasses(head + "size: [4, 2], link: " + link + "}").rfind(in_car + "link must be from 0.05 ", 0),
+              0U)
+        << link;
+  for (const char* size : {"[1e30, 2]", "[.inf, 2]", "[1001, 2]"})
+    EXPECT_EQ(errorOfClasses(head + "link: 1, size: " + size + "}").rfind(in_car + "length must be from 0.01 ", 0), 0U)
+        << size;
+  EXPECT_EQ(errorOfClasses(head + "link: 1, size: [4, 1e-30]}"),
+            in_car + "width must be from 0.01 to 1000 m, found 1e-30");
+  EXPECT_EQ(errorOfClasses(head + "size: [1000, 0.01], link: 0.05}"), "");
+  EXPECT_EQ(errorOfClasses("{name: car, kind: stuff, ids: [99999999999999999999], color: [1, 2, 3]}"),
+            in_car + "'ids' must be a list of raw ids");
+}
+
+TEST(ClassTable, NestingHasAnEnd)
+{
+  const std::string deep(200000, '[');
+  EXPECT_EQ(errorOf("classes: " + deep), "my.yaml: nested more than 64 deep");
+  std::string dashes;
+  for (int i = 0; i < 100000; ++i) dashes += "- ";
+  EXPECT_EQ(errorOf(dashes), "my.yaml: nested more than 64 deep");
+  EXPECT_EQ(errorOf("# " + std::string(200, '-') + "\nclasses: []"), "my.yaml: the list 'classes' is empty");
 }
 
 TEST(ClassTable, WhatIsNoTableIsSaidSo)
@@ -180,6 +214,18 @@ TEST(ClassTable, LoadsAFileAndSaysWhatThereIsWhereItCannot)
                                                "': cannot be read; expected a YAML file or one of nuscenes, "
                                                "object, semantic_kitti");
     }
+}
+
+TEST(ClassTable, FilesThatNeverEndAreNotBegunWith)
+{
+  const auto pipe = std::filesystem::temp_directory_path() / ("class_table_pipe_" + std::to_string(getpid()));
+  ASSERT_EQ(mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& name : {pipe.string(), std::string("/dev/zero")})
+    EXPECT_THROW(ClassTable::load(name), std::runtime_error) << name;
+  std::filesystem::remove(pipe);
+  std::ofstream(pipe) << "#" << std::string(2 << 20, ' ');
+  EXPECT_THROW(ClassTable::load(pipe.string()), std::runtime_error);
+  std::filesystem::remove(pipe);
 }
 
 TEST(ClassTable, ShippedTablesAreTheFilesOfConfig)

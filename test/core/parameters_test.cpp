@@ -163,5 +163,14 @@ TEST(Algorithms, HaveDefaultsWithinTheirRangesAndRefuseWhatIsNot)
   EXPECT_THROW(makeAlgorithm("no_such_algorithm"), std::invalid_argument);
   EXPECT_THROW(algorithmParameters(""), std::invalid_argument);
 }
+
+TEST(Algorithms, AreNamedInAListOrAllAtOnce)
+{
+  EXPECT_EQ(algorithmsOfList("all"), algorithmNames());
+  EXPECT_EQ(algorithmsOfList("depth"), std::vector<std::string>{"depth"});
+  EXPECT_EQ(algorithmsOfList("birds_eye,depth"), (std::vector<std::string>{"birds_eye", "depth"}));
+  for (const char* wrong : {"", ",", "depth,,birds_eye", "depth,sonar", "Depth"})
+    EXPECT_THROW(algorithmsOfList(wrong), std::invalid_argument) << wrong;
+}
 }  // namespace
 }  // namespace lidar_panoptic_clustering

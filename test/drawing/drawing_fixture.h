@@ -12,7 +12,7 @@
 
 /// fontconfig keeps some patterns for the life of the process, whatever is drawn: not a leak of this package's.
 extern "C" const char* __lsan_default_suppressions();
-extern "C" const char* __lsan_default_suppressions()
+extern "C" __attribute__((weak)) const char* __lsan_default_suppressions()
 {
   return "leak:libfontconfig\n";
 }

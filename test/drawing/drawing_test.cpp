@@ -150,6 +150,55 @@ TEST_F(Drawing, marksStandAroundTheirPlace)
   EXPECT_EQ(picture.pixel(static_cast<int>(left.x), static_cast<int>(left.y)), kGreen);
 }
 
+TEST_F(Drawing, boxesStandAroundTheirObjectsFromAbove)
+{
+  const PanopticCloud cloud = blank(2, 2);
+  NamedBox box;
+  box.x = 20.0F, box.y = 5.0F, box.length = 8.0F, box.width = 4.0F, box.yaw = 1.5707963F, box.rgb = kGreen;
+  ScanPanel panel{"", &cloud, {}, "", {box}};
+  ScanFigureOptions options;
+  options.window = ViewWindow{0.0, 40.0, -10.0, 15.0};
+  drawScanFigure({panel}, file("scan.png"), options);
+  const Canvas picture = Canvas::readPng(file("scan.png"));
+  const BirdsEyeView view = layOut({panel}, options).panels[0].birds_eye_view;
+  const auto colorAt = [&](double x, double y)
+  {
+    const PixelPoint at = view.toPixel(x, y);
+    return picture.pixel(static_cast<int>(at.x), static_cast<int>(at.y));
+  };
+  EXPECT_EQ(colorAt(18.0, 2.5), kGreen) << "a long side, turned to y";
+  EXPECT_EQ(colorAt(21.0, 9.0), kGreen) << "a short side";
+  EXPECT_NE(colorAt(20.0, 5.0), kGreen) << "the middle is open";
+  EXPECT_EQ(view.toPixel(0.0, 15.0).x, view.box.x) << "the window is the one of the options";
+  EXPECT_EQ(view.toPixel(40.0, 15.0).y, view.box.y);
+
+  const std::size_t without_text = countPixels(picture, view.box, 0xFFFFFF);
+  panel.boxes[0].text = "car 1";
+  drawScanFigure({panel}, file("scan.png"), options);
+  EXPECT_GT(countPixels(Canvas::readPng(file("scan.png")), view.box, 0xFFFFFF), without_text + 20);
+}
+
+TEST_F(Drawing, rangeImagesAndCountsCanBeLeftOut)
+{
+  const PanopticCloud cloud = blank(4, 8);
+  const std::vector<ScanPanel> panels{{"", &cloud, {}, ""}};
+  ScanFigureOptions options;
+  const int with = layOut(panels, options).height;
+  options.range_images = false;
+  EXPECT_EQ(layOut(panels, options).panels[0].range_picture.height, 0.0);
+  EXPECT_LT(layOut(panels, options).height, with);
+
+  drawScanFigure(panels, file("counted.png"), options);
+  options.counts = false;
+  drawScanFigure(panels, file("plain.png"), options);
+  Box title = layOut(panels, options).panels[0].title;
+  title.height -= 1.0;  // the view's frame
+  constexpr std::uint32_t kPaper = 0x161B22;
+  const auto paper = [&](const char* name) { return countPixels(Canvas::readPng(file(name)), title, kPaper); };
+  EXPECT_LT(paper("counted.png"), paper("plain.png"));
+  EXPECT_EQ(paper("plain.png"), static_cast<std::size_t>(title.width * title.height)) << "nothing is written";
+}
+
 TEST_F(Drawing, wrongScanFiguresAreRefused)
 {
   PanopticCloud cloud = blank(2, 3);
@@ -163,6 +212,9 @@ TEST_F(Drawing, wrongScanFiguresAreRefused)
   EXPECT_THROW(draw({{"missing", nullptr, {}, ""}}), std::invalid_argument);
   EXPECT_THROW(draw({{"", &cloud, {}, ""}}, 319), std::invalid_argument);
   EXPECT_THROW(draw(std::vector<ScanPanel>(40, {"", &cloud, {}, ""}), 8192), std::invalid_argument);
+  ScanFigureOptions inside_out;
+  inside_out.window = ViewWindow{5.0, -5.0, -5.0, 5.0};
+  EXPECT_THROW(drawScanFigure({{"", &cloud, {}, ""}}, file("never.png"), inside_out), std::invalid_argument);
   cloud.width = 4;
   EXPECT_THROW(draw({{"", &cloud, {}, ""}}), std::invalid_argument);
   EXPECT_EQ(fileCount(), 0U);

@@ -101,7 +101,7 @@ TEST(PanopticQuality, LiteralScan)
   PanopticQuality quality(kitti(), 1);
   add(quality, found, truth);
 
-  const ClassCounts& car = countsOf(quality, "car");
+  const ClassCounts car = countsOf(quality, "car");
   EXPECT_EQ(car.tp, 1U);
   EXPECT_EQ(car.fp, 1U);
   EXPECT_EQ(car.fn, 0U);

@@ -26,7 +26,7 @@ class Bag : public Graph
 
 TEST_F(Bag, GivesTheSameIdsAsTheScanItRecorded)
 {
-  for (const auto& [algorithm, type] : kClusterNodelets)
+  for (const auto& [algorithm, type] : clusterNodelets())
   {
     SCOPED_TRACE(algorithm);
     const std::string name = newName();

@@ -130,7 +130,7 @@ LabelledCloud wildScene()
 
 TEST_F(BadPoints, WildCoordinatesAreProcessedByAll)
 {
-  for (const auto& [algorithm, type] : kClusterNodelets)
+  for (const auto& [algorithm, type] : clusterNodelets())
   {
     SCOPED_TRACE(algorithm);
     const std::string name = load(type);

@@ -53,19 +53,19 @@ TEST_F(ClusterLifecycle, LoadsIntoAnExistingManagerUnloadsAndReloads)
   ASSERT_TRUE(ros::service::waitForService("/manager/list", 10000));
   const LabelledCloud cloud = labelledScene();
   std::vector<std::string> names;
-  for (const auto& [algorithm, type] : kClusterNodelets)
+  for (const auto& [algorithm, type] : clusterNodelets())
   {
     names.push_back(newName());
     ASSERT_TRUE(client.load(names.back(), type)) << algorithm;
   }
-  EXPECT_FALSE(client.load(names[0], kClusterNodelets[0].second)) << "two nodelets of one name";
-  EXPECT_EQ(client.count(), kClusterNodelets.size());
+  EXPECT_FALSE(client.load(names[0], clusterNodelets()[0].second)) << "two nodelets of one name";
+  EXPECT_EQ(client.count(), clusterNodelets().size());
 
   for (int round = 0; round < 2; ++round)
   {
     for (std::size_t i = 0; i < names.size(); ++i)
     {
-      const auto [algorithm, type] = kClusterNodelets[i];
+      const auto& [algorithm, type] = clusterNodelets()[i];
       {
         const auto input = advertise<LabelledCloud>(names[i] + "/input");
         Probe<PanopticCloud> output(names[i] + "/output");
@@ -79,7 +79,7 @@ TEST_F(ClusterLifecycle, LoadsIntoAnExistingManagerUnloadsAndReloads)
       EXPECT_FALSE(client.unload(names[i]));
       EXPECT_TRUE(client.load(names[i], type));
     }
-    EXPECT_EQ(client.count(), kClusterNodelets.size());
+    EXPECT_EQ(client.count(), clusterNodelets().size());
   }
   for (const auto& name : names) EXPECT_TRUE(client.unload(name));
   EXPECT_EQ(client.count(), 0U);
@@ -131,7 +131,7 @@ TEST_F(ClusterLifecycle, UnloadsAndReloadsWhileScansFlow)
   Probe<visualization_msgs::MarkerArray> markers(name + "/markers");
   for (int i = 0; i < 12; ++i)
   {
-    const auto& [algorithm, type] = kClusterNodelets[i % kClusterNodelets.size()];
+    const auto& [algorithm, type] = clusterNodelets()[i % clusterNodelets().size()];
     ASSERT_TRUE(tryLoad(name, type, {{name + "/input", "/traffic/scan"}})) << algorithm;
     if (i % 3 != 2)  // every third goes at once
     {

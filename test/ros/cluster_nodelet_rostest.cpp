@@ -43,11 +43,11 @@ void expectClustered(const PanopticCloud& out, const LabelledCloud& in, const st
   }
 }
 
-class EachClusterNodelet : public Graph, public testing::WithParamInterface<std::pair<const char*, const char*>>
+class EachClusterNodelet : public Graph, public testing::WithParamInterface<std::pair<std::string, std::string>>
 {
 };
-INSTANTIATE_TEST_SUITE_P(Algorithms, EachClusterNodelet, testing::ValuesIn(kClusterNodelets),
-                         [](const auto& instance) { return std::string(instance.param.first); });
+INSTANTIATE_TEST_SUITE_P(Algorithms, EachClusterNodelet, testing::ValuesIn(clusterNodelets()),
+                         [](const auto& instance) { return instance.param.first; });
 
 /// A cloud's sensor_origin_ stands in no message: it arrives only where the object itself is handed on, and leaves
 /// the nodelet only where its own object is.

@@ -3,12 +3,8 @@
 
 #include "lidar_panoptic_clustering/pipeline/factory.h"
 
+#include <dynamic_reconfigure/ConfigDescription.h>
 #include <dynamic_reconfigure/Reconfigure.h>
-#include <lidar_panoptic_clustering/BirdsEyeClusterConfig.h>
-#include <lidar_panoptic_clustering/DepthClusterConfig.h>
-#include <lidar_panoptic_clustering/EuclideanClusterConfig.h>
-#include <lidar_panoptic_clustering/ScanLineRunClusterConfig.h>
-#include <lidar_panoptic_clustering/SupervoxelClusterConfig.h>
 #include <pcl_ros/point_cloud.h>
 
 #include <algorithm>
@@ -27,34 +23,25 @@ ParameterMap valuesOf(const dynamic_reconfigure::Config& message)
   return values;
 }
 
-template <class Config>
-ParameterMap valuesOf(const Config& config)
-{
-  dynamic_reconfigure::Config message;
-  config.__toMessage__(message);
-  return valuesOf(message);
-}
-
 double number(const ParameterValue& value)
 {
   return std::holds_alternative<int>(value) ? std::get<int>(value) : std::get<double>(value);
 }
 
 /// The choices of a parameter, as the .cfg generator writes them.
-template <class Config>
-std::string editMethod(const std::string& parameter)
+std::string editMethod(const dynamic_reconfigure::ConfigDescription& description, const std::string& parameter)
 {
-  for (const auto& description : Config::__getParamDescriptions__())
-    if (description->name == parameter) return description->edit_method;
+  for (const auto& group : description.groups)
+    for (const auto& described : group.parameters)
+      if (described.name == parameter) return described.edit_method;
   return "";
 }
 
-template <class Config>
-void expectCfgAgrees(const std::string& algorithm)
+void expectCfgAgrees(const std::string& algorithm, const dynamic_reconfigure::ConfigDescription& description)
 {
   SCOPED_TRACE(algorithm);
-  const ParameterMap defaults = valuesOf(Config::__getDefault__());
-  const ParameterMap least = valuesOf(Config::__getMin__()), most = valuesOf(Config::__getMax__());
+  const ParameterMap defaults = valuesOf(description.dflt);
+  const ParameterMap least = valuesOf(description.min), most = valuesOf(description.max);
   const auto expected = algorithmParameters(algorithm);
   EXPECT_EQ(defaults.size(), expected.size());
   for (const auto& info : expected)
@@ -68,17 +55,24 @@ void expectCfgAgrees(const std::string& algorithm)
       EXPECT_EQ(number(most.at(info.name)), info.max);
     }
     for (const auto& choice : info.choices)
-      EXPECT_NE(editMethod<Config>(info.name).find("'value': '" + choice + "'"), std::string::npos) << choice;
+      EXPECT_NE(editMethod(description, info.name).find("'value': '" + choice + "'"), std::string::npos) << choice;
   }
 }
 
-TEST(CfgFiles, HaveTheDefaultsAndRangesOfTheCode)
+class CfgFiles : public Graph
 {
-  expectCfgAgrees<EuclideanClusterConfig>("euclidean");
-  expectCfgAgrees<SupervoxelClusterConfig>("supervoxel");
-  expectCfgAgrees<DepthClusterConfig>("depth");
-  expectCfgAgrees<ScanLineRunClusterConfig>("scan_line_run");
-  expectCfgAgrees<BirdsEyeClusterConfig>("birds_eye");
+};
+
+TEST_F(CfgFiles, HaveTheDefaultsAndRangesOfTheCode)
+{
+  for (const auto& [algorithm, type] : clusterNodelets())
+  {
+    const std::string name = load(type);
+    Probe<dynamic_reconfigure::ConfigDescription> descriptions(name + "/parameter_descriptions");
+    const auto description = descriptions.next();
+    ASSERT_TRUE(description) << algorithm;
+    expectCfgAgrees(algorithm, *description);
+  }
 }
 
 class ClusterParameters : public Graph

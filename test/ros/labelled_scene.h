@@ -5,20 +5,37 @@
 
 #include <sensor_msgs/PointCloud2.h>
 
-#include <array>
+#include <cctype>
 #include <string>
 #include <utility>
+#include <vector>
 
 namespace lidar_panoptic_clustering
 {
-/// The algorithms and the nodelets that run them.
-constexpr std::array<std::pair<const char*, const char*>, 5> kClusterNodelets = {{
-    {"euclidean", "EuclideanClusterNodelet"},
-    {"supervoxel", "SupervoxelClusterNodelet"},
-    {"depth", "DepthClusterNodelet"},
-    {"scan_line_run", "ScanLineRunClusterNodelet"},
-    {"birds_eye", "BirdsEyeClusterNodelet"},
-}};
+/// The nodelet that runs an algorithm, named as cluster.launch does it: scan_line_run, ScanLineRunClusterNodelet.
+inline std::string clusterNodelet(const std::string& algorithm)
+{
+  std::string name;
+  bool begins = true;
+  for (const char c : algorithm)
+  {
+    if (c != '_') name += begins ? static_cast<char>(std::toupper(static_cast<unsigned char>(c))) : c;
+    begins = std::isalpha(static_cast<unsigned char>(c)) == 0;
+  }
+  return name + "ClusterNodelet";
+}
+
+/// All algorithms and the nodelets that run them.
+inline const std::vector<std::pair<std::string, std::string>>& clusterNodelets()
+{
+  static const auto list = []
+  {
+    std::vector<std::pair<std::string, std::string>> names;
+    for (const std::string& algorithm : algorithmNames()) names.emplace_back(algorithm, clusterNodelet(algorithm));
+    return names;
+  }();
+  return list;
+}
 
 /// A scan of 8 x 64 pixels with a dozen objects, and a header.
 inline LabelledCloud labelledScene(std::uint64_t stamp = 1700000000123456)

@@ -132,7 +132,7 @@ TEST_F(SequenceBagGraph, GivesTheLabelsAndInstancesThatThePlayerGives)
     ASSERT_EQ(truth.count(returns), 1U);
     expectSame(*truth.at(returns), *cloud);
   }
-  for (const auto& [algorithm, type] : kClusterNodelets)
+  for (const auto& [algorithm, type] : clusterNodelets())
   {
     SCOPED_TRACE(algorithm);
     const std::string of_player = newName(), of_bag = newName();

@@ -67,9 +67,8 @@ TEST_F(PanopticBenchmark, WhatCannotBeWrittenIsNamed)
   EXPECT_NE(out().find("\ndepth "), std::string::npos) << "the figures are printed before they are lost";
   EXPECT_TRUE(fs::is_character_file("/dev/full"));
   ASSERT_EQ(benchmark("--algorithms depth --output out --limit 1"), 0) << err();
-  fs::create_symlink("/dev/full", output("depth", "03", 1).string() + ".part");
+  fs::create_symlink("/dev/full", output("depth", "03", 1));
   expectFailure("--algorithms depth --output out --keep-going", {"03/predictions/000001.label: No space left"});
-  EXPECT_FALSE(fs::exists(output("depth", "03", 1)));
 }
 
 TEST_F(PanopticBenchmark, WrongOptions)

@@ -29,6 +29,14 @@ std::string read(const fs::path& path)
   return {std::istreambuf_iterator<char>(in), {}};
 }
 
+/// Files begun and not finished, below a folder.
+int partsLeft(const fs::path& folder)
+{
+  int count = 0;
+  for (const auto& entry : fs::recursive_directory_iterator(folder)) count += entry.path().extension() == ".part";
+  return count;
+}
+
 /// Runs the program, which is built into the folder of this test, on a data set of two sequences of three scans of 100
 /// points; a test disturbs it before.
 class PanopticEvaluate : public testing::Test
@@ -81,7 +89,7 @@ protected:
     EXPECT_EQ(evaluate("--report r.json " + more), 1);
     for (const std::string& part : parts) EXPECT_NE(err().find(part), std::string::npos) << part << "\n" << err();
     EXPECT_FALSE(fs::exists(folder_ / "r.json"));
-    EXPECT_FALSE(fs::exists(folder_ / "r.json.part"));
+    EXPECT_EQ(partsLeft(folder_), 0);
   }
 
   fs::path folder_, program_;
@@ -134,6 +142,36 @@ TEST_F(PanopticEvaluate, MergeRefusesWhatIsNoReport)
   EXPECT_NE(err().find("out.txt: not JSON"), std::string::npos) << err();
   EXPECT_EQ(run("--merge a.json none.json"), 1);
   EXPECT_NE(err().find("none.json"), std::string::npos) << err();
+}
+
+TEST_F(PanopticEvaluate, ReportsThatNestOrNeverEndAreRefused)
+{
+  std::ofstream(folder_ / "deep.json") << R"({"class_table":"semantic_kitti","min_points":)" << std::string(200000, '[')
+                                       << std::string(200000, ']') << "}";
+  EXPECT_EQ(run("--merge deep.json"), 1);
+  EXPECT_NE(err().find("deep.json: nested more than 64 deep"), std::string::npos) << err();
+  EXPECT_EQ(run("--merge /dev/zero"), 1);
+  EXPECT_NE(err().find("/dev/zero: expected a file, found a device"), std::string::npos) << err();
+  EXPECT_EQ(std::system(("mkfifo " + (folder_ / "pipe").string()).c_str()), 0);
+  EXPECT_EQ(run("--merge pipe"), 1);
+  EXPECT_NE(err().find("pipe: expected a file, found a pipe"), std::string::npos) << err();
+  fs::remove(prediction("08", 1));
+  fs::rename(folder_ / "pipe", prediction("08", 1));
+  expectFailure("", {"08/predictions/000001.label: expected a file, found a pipe"});
+}
+
+TEST_F(PanopticEvaluate, WhatAReportSaysMovesNoCursor)
+{
+  std::ofstream(folder_ / "a.json") << "{\"class_table\": \"\\u001b[2Jx\"}";
+  EXPECT_EQ(run("--merge a.json"), 1);
+  EXPECT_EQ(err().find('\x1b'), std::string::npos);
+  EXPECT_NE(err().find("\\x1b[2Jx"), std::string::npos) << err();
+}
+
+TEST_F(PanopticEvaluate, SequencesStayBelowTheirFolder)
+{
+  for (const std::string name : {"../sequences/08", "..", ".", "/", fs::absolute(folder_).string()})
+    expectFailure("--sequences '" + name + "'", {"sequence '" + name + "'", "expected the name of one folder"});
 }
 
 TEST_F(PanopticEvaluate, ShortAndLongFiles)
@@ -211,9 +249,15 @@ TEST_F(PanopticEvaluate, UnwritableReportAndFullDisk)
 {
   EXPECT_EQ(evaluate("--report none/r.json"), 1);
   EXPECT_NE(err().find("cannot write none/r.json: No such file or directory"), std::string::npos) << err();
-  fs::create_symlink("/dev/full", folder_ / "full.json.part");
+  fs::create_symlink("/dev/full", folder_ / "full.json");
   EXPECT_EQ(evaluate("--report full.json"), 1);
   EXPECT_NE(err().find("cannot write full.json: No space left"), std::string::npos) << err();
+  fs::remove(folder_ / "full.json");
+  // a disk that is full as soon as the report comes: files end at 1 kB, which takes the message but not the report
+  std::ofstream(folder_ / "full.sh") << "trap '' XFSZ; ulimit -f 1; '" << program_.string()
+                                     << "' --dataset data --predictions found --report full.json >out.txt 2>err.txt";
+  EXPECT_EQ(WEXITSTATUS(std::system(("cd '" + folder_.string() + "' && bash full.sh").c_str())), 1);
+  EXPECT_NE(err().find("cannot write full.json: File too large"), std::string::npos) << err();
   EXPECT_FALSE(fs::exists(folder_ / "full.json"));
 }
 

@@ -54,6 +54,7 @@ private:
   std::uint32_t clusterGroup(const ThingScan& scan, std::size_t group, std::uint32_t first_object,
                              std::vector<std::uint32_t>& component);
   std::uint32_t joinLeftOver(std::uint32_t next_object);
+  void numberUsed(std::uint32_t objects, std::vector<std::uint32_t>& component);
 
   SupervoxelConfig config_;
   LinkGroups groups_;
@@ -62,6 +63,7 @@ private:
   std::vector<std::uint32_t> voxel_of_point_;  ///< parallel to things_
   std::vector<std::uint32_t> object_of_voxel_;
   std::vector<std::uint32_t> object_of_set_;
+  std::vector<std::uint32_t> number_of_object_;
   DisjointSets left_over_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -30,4 +30,7 @@ private:
   std::vector<std::uint32_t> id_of_;  ///< by raw id; the last entry stands for all beyond the table
   std::size_t last_;
 };
+
+/// The canonical id of the table's first ignored class; ClassMapping::kUnmapped where it has none.
+std::uint32_t ignoredId(const ClassTable& table);
 }  // namespace lidar_panoptic_clustering

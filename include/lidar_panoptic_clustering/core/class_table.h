@@ -38,7 +38,7 @@ struct ClassInfo
 class ClassTable
 {
 public:
-  /// `name_or_path`: a table that ships with the package ("semantic_kitti", "nuscenes", "object"), or a YAML file.
+  /// `name_or_path`: a table that ships with the package (shippedNames()), or a YAML file.
   /// Throws std::runtime_error when there is no such file, std::invalid_argument when its content is wrong;
   /// both name the file, the class, and what was expected.
   static ClassTable load(const std::string& name_or_path);
@@ -70,6 +70,8 @@ public:
   const ClassInfo& operator[](ClassIndex index) const { return classes_[index]; }
   /// Number of classes, the unknown class at index 0 included: valid indices are 0..size()-1.
   std::size_t size() const { return classes_.size(); }
+  /// Whether -1 stands for no class in this convention ("minus_one: ignored").
+  bool ignoresMinusOne() const { return ignores_minus_one_; }
   const std::string& groupName(std::uint8_t group) const { return groups_[group]; }
   std::size_t groupCount() const { return groups_.size(); }
 
@@ -79,6 +81,7 @@ private:
   std::string name_;
   std::vector<ClassInfo> classes_;
   std::vector<std::string> groups_;
+  bool ignores_minus_one_ = false;
   std::vector<ClassIndex> class_of_id_;  ///< by raw id, as are the next two
   std::vector<ClassKind> kind_of_id_;
   std::vector<std::uint32_t> rgb_of_id_;

@@ -16,6 +16,9 @@ namespace lidar_panoptic_clustering
 using ParameterValue = std::variant<bool, int, double, std::string>;
 using ParameterMap = std::map<std::string, ParameterValue>;
 
+/// Distances that 0 switches off are this or more where they are on [m]: below lies the rounding of coordinates.
+constexpr double kLeastDistanceM = 0.001;
+
 struct ParameterInfo
 {
   std::string name;
@@ -23,6 +26,9 @@ struct ParameterInfo
   double min = 0.0, max = 0.0;
   std::vector<std::string> choices;
 };
+
+/// As a command line takes it: true, 5, 0.35.
+std::string parameterText(const ParameterValue& value);
 
 namespace detail
 {
@@ -109,6 +115,9 @@ void applyParameters(Config& config, const ParameterMap& given)
     if (!found) detail::throwUnknown(name, known);
   }
 }
+
+/// Throws std::invalid_argument when a distance is neither 0, for off, nor kLeastDistanceM to `max`.
+void requireOffOrDistance(const std::string& name, double metres, double max);
 
 /// Throws std::invalid_argument when a member is outside its range.
 template <class Config>

@@ -13,12 +13,15 @@ namespace lidar_panoptic_clustering
 /// it without a comparison, and only the 24 cells around (kReach either side) can hold others that are.
 ///
 /// A cell also has a layer, so that points of several kinds can lie in one place apart. Keeps its memory.
+///
+/// Holds for coordinates of up to 10 km and distances of 0.2 mm and more: less than 2^27 cells.
 class PlanarCells
 {
 public:
   /// Begins anew, with room for `capacity` points.
   void clear(std::size_t capacity);
-  /// To be called for each point, then close(). `distance` is the diagonal of the layer's cells [m], above 0.
+  /// To be called for each point, then close(). `distance` is the diagonal of the layer's cells [m]; layers
+  /// are 0 to 255.
   void add(float x, float y, std::int32_t layer, float distance, std::uint32_t thing);
   void close();
 
@@ -44,7 +47,7 @@ public:
 
 private:
   static constexpr int kReach = 2;
-  static constexpr std::uint32_t kNone = VoxelIndex::kNone;
+  static constexpr std::uint32_t kNone = PlanarIndex::kNone;
 
   struct Point
   {
@@ -83,12 +86,12 @@ private:
   const Box& boxOf(std::uint32_t cell);
   const Point* sorted(std::uint32_t cell, bool along_y);
 
-  VoxelIndex index_;
+  PlanarIndex index_;
   std::vector<Range> ranges_;  ///< by cell
   std::vector<Point> added_, points_;
   std::vector<std::uint32_t> cell_of_added_;
   float last_distance_ = 0.0F, cells_per_m_ = 0.0F;  ///< of the point added last, like the next two
-  VoxelKey last_key_{};
+  PlanarKey last_key_{};
   std::uint32_t last_cell_ = kNone;
 
   std::vector<Box> boxes_;                              ///< by cell; min above max until it is asked for

@@ -18,10 +18,24 @@ struct VoxelKey
   }
 };
 
+/// A cell's place in bird's-eye view, on one of 256 layers; coordinates of up to 27 bits and sign each.
+struct PlanarKey
+{
+  std::int32_t x, y, layer;
+
+  std::uint64_t packed() const
+  {
+    constexpr std::uint64_t kMask = 0xFFFFFFF;
+    return static_cast<std::uint64_t>(layer) << 56 | (static_cast<std::uint64_t>(y) & kMask) << 28 |
+           (static_cast<std::uint64_t>(x) & kMask);
+  }
+};
+
 /// Numbers the occupied voxels 0, 1, 2 ... in order of insertion: an open-addressing hash table that keeps its memory.
 ///
 /// Emptying it costs nothing: a slot counts only while it bears the present epoch.
-class VoxelIndex
+template <class Key>
+class CellIndex
 {
 public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
@@ -36,7 +50,7 @@ public:
   }
 
   /// The voxel's number, a new one at its first insertion.
-  std::uint32_t insert(const VoxelKey& key)
+  std::uint32_t insert(const Key& key)
   {
     std::size_t at = locate(key.packed());
     if (slots_[at].epoch == epoch_) return slots_[at].number;
@@ -51,13 +65,13 @@ public:
   }
 
   /// kNone for a voxel that was not inserted.
-  std::uint32_t find(const VoxelKey& key) const
+  std::uint32_t find(const Key& key) const
   {
     const Slot& slot = slots_[locate(key.packed())];
     return slot.epoch == epoch_ ? slot.number : kNone;
   }
 
-  const VoxelKey& operator[](std::uint32_t number) const { return keys_[number]; }
+  const Key& operator[](std::uint32_t number) const { return keys_[number]; }
   std::size_t size() const { return keys_.size(); }
 
 private:
@@ -102,9 +116,12 @@ private:
   }
 
   std::vector<Slot> slots_ = std::vector<Slot>(kFewestSlots, Slot{0, 0, 0});
-  std::vector<VoxelKey> keys_;
+  std::vector<Key> keys_;
   std::uint32_t epoch_ = 1;  ///< above that of every slot not in use
   std::size_t mask_ = kFewestSlots - 1;
   int shift_ = 58;  ///< from 64 bits down to those of mask_
 };
+
+using VoxelIndex = CellIndex<VoxelKey>;
+using PlanarIndex = CellIndex<PlanarKey>;
 }  // namespace lidar_panoptic_clustering

@@ -13,11 +13,15 @@ namespace lidar_panoptic_clustering
 /// The algorithms' names: "euclidean", "supervoxel", "depth", "scan_line_run", "birds_eye".
 std::vector<std::string> algorithmNames();
 
+/// The algorithms of a list with commas, in its order: "depth,birds_eye"; "all" stands for all of them.
+/// Throws std::invalid_argument on an unknown name and on an empty list; the message lists what there is.
+std::vector<std::string> algorithmsOfList(const std::string& list);
+
 /// The parameters of an algorithm and of the pipeline around it, with defaults and ranges.
 /// Throws std::invalid_argument on an unknown name.
 std::vector<ParameterInfo> algorithmParameters(const std::string& algorithm);
 
-/// What makes an algorithm the one of Zhao et al. 2021: no class sizes, no refinement.
+/// What makes an algorithm the one of Zhao et al. 2021: no class sizes, no refinement. Any name is taken.
 ParameterMap surveyParameters(const std::string& algorithm);
 
 /// What FramePipeline needs: the configuration around the clusterer, and the clusterer.

@@ -33,6 +33,7 @@ struct StageTimes
 class FramePipeline
 {
 public:
+  /// Throws std::invalid_argument on a value outside its range, and without a clusterer.
   FramePipeline(std::shared_ptr<const ClassTable> table, const PipelineConfig& config,
                 std::unique_ptr<Clusterer> clusterer);
 
@@ -40,12 +41,15 @@ public:
   void reconfigure(const PipelineConfig& config, std::unique_ptr<Clusterer> clusterer);
 
   /// Select, cluster, refine: finds the instances of a scan. Throws std::invalid_argument when the cloud's size
-  /// contradicts its points, and when the clusterer needs scan lines and gets one row of points that is none.
+  /// contradicts its points, and when the clusterer needs scan lines and gets one row of points that is none;
+  /// std::logic_error with its class's name when the clusterer breaks Clusterer's contract. Afterwards there are no
+  /// things and no instances.
   void segment(const LabelledCloud& in);
 
   /// Fills `out` with the points of `in`, the cloud given to segment() last, in the same order, with instance ids and
   /// colours; header, width, height and coordinates are the same bit for bit. Labels change only where an instance's
-  /// vote went against a point's class: to the canonical id of the instance's class.
+  /// vote went against a point's class: to the canonical id of the instance's class. Throws std::invalid_argument on a
+  /// cloud of another size.
   void paint(const LabelledCloud& in, PanopticCloud& out);
 
   /// The class that the vote gives a point of instance `id` (1..n) and class `own`.

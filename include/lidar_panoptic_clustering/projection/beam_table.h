@@ -1,6 +1,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <vector>
 
@@ -24,9 +25,19 @@ public:
     return beam;
   }
 
+  /// How far `sine` lies from `beam`, its nearest: 0 for a point on it, 0.5 half way to the next one on that side; at
+  /// most 1. Of a table with a single beam always 0.
+  float misfit(float sine, std::uint32_t beam) const
+  {
+    const float off = sine - sine_[beam];
+    const std::uint32_t other = off > 0.0F ? (beam > 0 ? beam - 1 : beam + 1) : (beam + 1 < rows() ? beam + 1 : beam - 1);
+    return rows() > 1 ? std::min(1.0F, std::abs(off / (sine_[other] - sine_[beam]))) : 0.0F;
+  }
+
 private:
   static constexpr std::uint32_t kBins = 4096;  // 0.03 deg at the horizon, a sixth of the finest beam spacing there is
 
+  std::vector<float> sine_;                  ///< by beam
   std::vector<float> lower_sine_;            ///< by beam: half way to the next lower one; -2 for the lowest
   std::vector<std::uint32_t> first_of_bin_;  ///< the highest beam that reaches into the bin; bin 0 looks straight up
 };

@@ -44,6 +44,17 @@ public:
   /// azimuth, as in a tilted frame, cancels. 0 where hardly anything returned.
   double staggeredColumns(Orientation orientation) const;
 
+  /// Whether enough returns have neighbours, either way, for the figures to mean something.
+  bool enough() const;
+
+  /// Means of what changes from one firing to the next along the scan lines, absolute [rad; of the elevation its sine].
+  double azimuthStep(Orientation orientation) const;
+  double elevationStep(Orientation orientation) const;
+
+  /// The share of neighbouring scan lines of which the one with the lower row in `row_of_line` is the higher one; 1
+  /// where hardly any two have returns side by side.
+  double agreement(Orientation orientation, const std::vector<std::uint32_t>& row_of_line) const;
+
 private:
   struct Pixel;
   /// Sums over the pixels compared between two neighbouring rows (or columns).
@@ -66,7 +77,6 @@ private:
   };
 
   void gather(const RawCloud& cloud, const ScanFields& fields, std::size_t stride);
-  bool enough() const;
   const Direction& across(Orientation o) const { return o == Orientation::kRowsAreRings ? down_ : right_; }
   const Direction& along(Orientation o) const { return o == Orientation::kRowsAreRings ? right_ : down_; }
 

@@ -34,8 +34,12 @@ struct OrganizedScan
 /// Throws std::invalid_argument when there are not as many labels as points.
 void labelPoints(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of_point);
 
-/// The same with one label a pixel of image.cloud, row-major, as a network on the range image writes them. Hidden
-/// points get their pixel's label, pixels without a return get theirs too.
+/// The same with one label a pixel of image.cloud, row-major, as a network on the range image writes them; pixels
+/// without a return get theirs too.
+///
+/// A return that its pixel does not show gets the label of the nearest returns that are shown, in 3-D: what stands
+/// before it tells nothing of it. Looked for within two rows and two columns of its pixel, and a distance of 0.1 m or
+/// two columns' width; where nothing is so near, and where there is no return, it gets `no_class`. Linear.
 /// Throws std::invalid_argument when there are not as many labels as pixels.
-void labelPixels(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of_pixel);
+void labelPixels(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of_pixel, std::uint32_t no_class);
 }  // namespace lidar_panoptic_clustering

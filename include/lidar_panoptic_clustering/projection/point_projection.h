@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/point_types.h"
+#include "lidar_panoptic_clustering/projection/scan_unfolding.h"
 
 #include <cstdint>
 #include <limits>
@@ -71,23 +72,32 @@ public:
   /// in any order of points, and owns none.
   ///
   /// `directions`: one a point, rows below `rows`; `labels`: one a point, or empty for none (0); `class_bits`: the bits
-  /// of a label that are its class. All but `rings` of `out` is filled. Linear in points and pixels; allocates only
-  /// while buffers grow.
+  /// of a label that are its class; `shift`: parts of a column, 0 to 1, by which all azimuths move to the right, so that
+  /// firings at the border of two columns fall into one of them. All but `rings` of `out` is filled. Linear in points
+  /// and pixels; allocates only while buffers grow.
   void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
                const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
-               std::uint32_t class_bits, Projection& out);
+               std::uint32_t class_bits, Projection& out, float shift = 0.0F);
+
+  /// Returns of the scan projected last that lie behind others of their pixel, and all of its returns.
+  std::size_t hiddenReturns() const { return hidden_.size() - without_return_; }
+  std::size_t returns() const { return returns_; }
+  /// Points of that scan that own no pixel, those without a return too.
+  const std::vector<std::uint32_t>& hidden() const { return hidden_; }
 
 private:
   void locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
-              Projection& out);
+              float shift, Projection& out);
   void listPoints(Projection& out) const;
 
   std::vector<std::uint32_t> hidden_;  ///< points that own no pixel
+  std::size_t returns_ = 0, without_return_ = 0;
 };
 
 /// The direction of each point of a scan whose points come ring after ring (see RingCounter): the row is its ring,
 /// from 0. A point without a return has its predecessor's ring. Returns the number of rings. Linear.
-std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, std::vector<PointDirection>& directions);
+std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, const Sweep& sweep,
+                         std::vector<PointDirection>& directions);
 
 /// Projects scans whose points come ring after ring (see RingCounter); buffers are kept between scans.
 class PointProjector

@@ -11,7 +11,7 @@ namespace lidar_panoptic_clustering
 struct FieldNames
 {
   std::string label;      ///< usual: label, class_id, semantic, class
-  std::string intensity;  ///< usual: intensity, reflectivity, remission
+  std::string intensity;  ///< usual: intensity, reflectivity, remission, i, intensities, reflectance, capitalised too
   std::string ring;       ///< usual: ring, channel
 };
 

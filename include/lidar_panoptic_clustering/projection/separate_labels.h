@@ -23,8 +23,9 @@ struct RawImage
 
 /// Reads a picture of class ids, as networks that work on range images produce them, row-major into `label_of_pixel`.
 ///
-/// Takes mono8, 8UC1, mono16, 16UC1 and 32SC1 of either byte order, padded rows too; a negative id becomes
-/// kUnreadableLabel. The picture must have `rows` x `columns` pixels. Throws std::invalid_argument, with what was
+/// Takes one channel of any number type (mono8, 8UC1, 8SC1, mono16, 16UC1, 16SC1, 32SC1, 32FC1, 64FC1) of either byte
+/// order, padded rows too; what is no id becomes kUnreadableLabel, see readIds(). A float32 holds ids exactly up to
+/// 2^24. The picture must have `rows` x `columns` pixels. Throws std::invalid_argument, with what was
 /// expected and found, where it has not, or contradicts itself. Linear in the pixels; the vector's memory is reused.
 void readLabelImage(const RawImage& image, std::uint32_t rows, std::uint32_t columns,
                     std::vector<std::uint32_t>& label_of_pixel);

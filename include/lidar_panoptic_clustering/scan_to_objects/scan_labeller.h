@@ -2,6 +2,7 @@
 
 #include "lidar_panoptic_clustering/core/class_mapping.h"
 #include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/core/label_numbering.h"
 #include "lidar_panoptic_clustering/labelling/ground_labeler.h"
 #include "lidar_panoptic_clustering/projection/organized_scan.h"
 #include "lidar_panoptic_clustering/projection/separate_labels.h"
@@ -19,7 +20,8 @@ struct ScanLabellerConfig
   std::string labels = "field";     ///< of the cloud; or image, cloud: of their own topic; or none: from the geometry
   std::string label_table;          ///< of the labels that come; empty: semantic_kitti, for none always object
   std::string class_table;          ///< of the labels that go out; empty: the same
-  double max_unknown_labels = 0.5;  ///< share of the labelled returns above which a scan's labels are of another table
+  double max_unknown_labels = 0.0;  ///< share of a scan's labelled returns whose ids the table may lack
+  bool check_label_shapes = true;   ///< refuse ids that look like another class's, see LabelNumbering
   GroundLabelerConfig ground;
 
   template <class Self, class Visitor>
@@ -29,6 +31,7 @@ struct ScanLabellerConfig
     visitor("label_table", self.label_table, std::vector<std::string>{});
     visitor("class_table", self.class_table, std::vector<std::string>{});
     visitor("max_unknown_labels", self.max_unknown_labels, 0.0, 1.0);
+    visitor("check_label_shapes", self.check_label_shapes);
     GroundLabelerConfig::visit(self.ground, visitor);
   }
 
@@ -39,8 +42,9 @@ struct ScanLabellerConfig
 /// Gives an organised scan its classes, as raw ids of the table clustered with.
 ///
 /// Each function throws std::invalid_argument, with what was expected and found, when the labels do not fit the scan or
-/// the share of ids that their table does not name tells that they belong to another one. Linear in points and pixels;
-/// buffers are kept between scans. Not shared between threads.
+/// LabelNumbering finds that they are not of their table. Ids beyond 65535 are labels of a .label file: the class is
+/// their low half, the instance in the high half is not used. Linear in points and pixels; buffers are kept between
+/// scans. Not shared between threads.
 class ScanLabeller
 {
 public:
@@ -59,17 +63,23 @@ public:
 
   /// Of the labels that go out.
   const std::shared_ptr<const ClassTable>& classTable() const { return class_table_; }
+  /// Which other tables the labels so far may be of, see LabelNumbering::doubt().
+  const std::string& doubt() const { return numbering_.doubt(); }
 
 private:
   void requireObjects() const;
-  void checkTable(const OrganizedScan& scan) const;
+  void takeClasses(OrganizedScan& scan);
+  void findHiddenLabels(const OrganizedScan& scan);
+  std::uint32_t classIn(std::uint32_t label) const;
   void mapIds(OrganizedScan& scan) const;
 
-  double max_unknown_;
-  std::unique_ptr<const ClassTable> label_table_;
+  std::shared_ptr<const ClassTable> label_table_;
   std::shared_ptr<const ClassTable> class_table_;
   std::optional<ClassMapping> mapping_;  ///< where the tables differ
+  LabelNumbering numbering_;
+  std::uint32_t no_class_;  ///< of the labels that come
   GroundLabeler ground_;
-  std::vector<std::uint32_t> separate_;  ///< by pixel or point
+  std::vector<std::uint32_t> separate_;       ///< by pixel or point
+  std::vector<std::uint32_t> hidden_labels_;  ///< of returns that no pixel shows
 };
 }  // namespace lidar_panoptic_clustering

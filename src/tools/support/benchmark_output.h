@@ -1,22 +1,21 @@
 #pragma once
 
+#include "core/aside_file.h"
+#include "core/input_file.h"
+#include "core/plain_numbers.h"
+#include "core/printable.h"
+#include "lidar_panoptic_clustering/core/version.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 #include "lidar_panoptic_clustering/evaluation/frame_times.h"
-#include "tools/support/aside_file.h"
 #include "tools/support/benchmark_settings.h"
-
-#include <fcntl.h>
-#include <unistd.h>
+#include "tools/support/fingerprint.h"
+#include "tools/support/scan_log.h"
 
 #include <algorithm>
-#include <cerrno>
-#include <cstdio>
-#include <cstring>
+#include <cstdint>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
-#include <map>
-#include <mutex>
+#include <limits>
+#include <optional>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -33,44 +32,51 @@ struct OutputError : std::runtime_error
 
 /// The predictions of one row: OUTPUT/ROW/sequences/SS/predictions/NNNNNN.label, which as a folder is what the
 /// leaderboard takes (spaces in the row's name are underscores). Beside it lie OUTPUT/ROW.settings, what they were made
-/// with, and OUTPUT/ROW.times.csv, a line a scan. A run with the same settings goes on where the last one stopped.
+/// with, OUTPUT/ROW.scans.csv, what of (a fingerprint a scan), and OUTPUT/ROW.times.csv. A run with the same settings
+/// goes on where the last one stopped; one with others, or with another scan of the same name, is refused.
 ///
 /// May be used from several threads, and by several shards at once.
 class RowOutput
 {
 public:
   /// Throws std::runtime_error when the folder cannot be written, or holds predictions of other settings.
-  RowOutput(const BenchmarkSettings& settings, const RowSettings& row) : base_(baseOf(settings, row))
+  RowOutput(const BenchmarkSettings& settings, const RowSettings& row, const ClassTable& table)
+      : base_(madeBase(settings, row)), scans_(base_ + ".scans.csv", 1), times_(base_ + ".times.csv", 4)
   {
-    std::error_code failed;
-    std::filesystem::create_directories(base_, failed);
-    if (failed) throw OutputError("cannot write " + base_ + ": " + failed.message());
-    agreeOnSettings(describe(settings, row));
-    readTimes();
+    agreeOnSettings(describe(settings, row, table));
   }
 
   /// Whether the scan was finished by a run before. Then `labels` holds its prediction and `time` its time, which is
-  /// unnamed when it is not known. A file of another length than the scan's is no prediction of it.
-  bool load(const std::string& sequence, const std::string& scan, std::size_t points,
+  /// unnamed when it is not known. A file of another length than the scan's is no prediction of it, nor is one that
+  /// nothing is known of. `made_of`: the fingerprint of all that was read of the scan. Throws OutputError when the
+  /// prediction was made of something else.
+  bool load(const std::string& sequence, const std::string& scan, const std::string& made_of, std::size_t points,
             std::vector<std::uint32_t>& labels, FrameTime& time) const
   {
-    const std::string path = predictionFile(base_, sequence, scan);
+    const std::string path = predictionFile(base_, sequence, scan), name = sequence + "/" + scan;
     std::error_code missing;
     const auto bytes = std::filesystem::file_size(path, missing);
-    if (missing || bytes != points * sizeof(std::uint32_t)) return false;
+    const auto* known = scans_.find(name);
+    if (missing || known == nullptr) return false;
+    if (known->front() != made_of)
+      throw OutputError(path +
+                        " was made of another scan, or of other classes, than are read now: choose another "
+                        "--output, or remove the folder");
+    if (bytes != points * sizeof(std::uint32_t)) return false;
     readLabelFile(path, labels);
-    const auto known = times_.find(sequence + "/" + scan);
-    time = known == times_.end() ? FrameTime{} : known->second;
+    time = timeOf(name);
     return true;
   }
 
-  /// The time goes first, so that no finished prediction lacks it. Throws OutputError.
-  void save(const std::string& sequence, const std::string& scan, const std::vector<std::uint32_t>& labels,
-            const FrameTime& time)
+  /// The prediction goes last, so that no finished one lacks its fingerprint and time. Throws OutputError.
+  void save(const std::string& sequence, const std::string& scan, const std::string& made_of,
+            const std::vector<std::uint32_t>& labels, const FrameTime& time)
   {
     try
     {
-      appendTime(time);
+      scans_.append(time.scan, {made_of});
+      times_.append(time.scan, {std::to_string(time.points), std::to_string(time.thing_points),
+                                shortText(time.cluster_ms, 17), shortText(time.pipeline_ms, 17)});
       writeLabelFile(predictionFile(base_, sequence, scan), labels);
     }
     catch (const std::exception& error)
@@ -80,81 +86,68 @@ public:
   }
 
 private:
-  static std::string baseOf(const BenchmarkSettings& settings, const RowSettings& row)
+  static std::string madeBase(const BenchmarkSettings& settings, const RowSettings& row)
   {
     std::string name = row.name;
     std::replace(name.begin(), name.end(), ' ', '_');
-    return (std::filesystem::path(settings.output) / name).string();
+    const std::string base = (std::filesystem::path(settings.output) / name).string();
+    std::error_code failed;
+    std::filesystem::create_directories(base, failed);
+    if (failed) throw OutputError("cannot write " + base + ": " + failed.message());
+    return base;
   }
 
-  /// All that decides the predictions, defaults included.
-  static std::string describe(const BenchmarkSettings& settings, const RowSettings& row)
+  /// All that decides the predictions but the scans themselves, defaults included.
+  static std::string describe(const BenchmarkSettings& settings, const RowSettings& row, const ClassTable& table)
   {
-    std::ostringstream text;
-    text << "semantics: " << (settings.semantics.empty() ? "ground truth" : settings.semantics) << "\n"
-         << "class table: " << settings.class_table << "\n"
-         << "columns: " << settings.columns << "\n"
-         << "algorithm: " << row.algorithm << "\n";
+    std::string text =
+        "semantics: " + printable(settings.semantics.empty() ? "ground truth" : settings.semantics, false) +
+        "\nclass table: " + printable(settings.class_table, false) + ", content " + fingerprintOf(table) +
+        "\ncolumns: " + std::to_string(settings.columns) + "\nalgorithm: " + row.algorithm + "\n";
     const ParameterMap parameters = row.allParameters();
     for (const ParameterInfo& info : algorithmParameters(row.algorithm))
     {
       const auto given = parameters.find(info.name);
-      std::visit([&](const auto& value) { text << info.name << ": " << std::boolalpha << value << "\n"; },
-                 given == parameters.end() ? info.value : given->second);
+      text += info.name + ": " + parameterText(given == parameters.end() ? info.value : given->second) + "\n";
     }
-    return text.str();
+    return text + "version: " + version() + "\n";
   }
 
   void agreeOnSettings(const std::string& wanted) const
   {
+    constexpr std::uint64_t kMaxSettings = 1U << 20U;
     const std::string path = base_ + ".settings";
-    std::ifstream file(path, std::ios::binary);
-    if (!file) return AsideFile(path).save(wanted);
-    std::istringstream found(std::string{std::istreambuf_iterator<char>(file), {}}), expected(wanted);
-    std::string found_line, expected_line;
-    while (std::getline(expected, expected_line))
+    // of several processes that find none the first to save has its way
+    if (!std::filesystem::exists(path) && AsideFile(path).saveIfNone(wanted)) return;
+    std::istringstream found(readTextFile(path, kMaxSettings)), expected(wanted);
+    for (;;)
     {
-      if (!std::getline(found, found_line)) found_line.clear();
+      std::string found_line, expected_line;
+      const bool has_found = static_cast<bool>(std::getline(found, found_line));
+      const bool has_expected = static_cast<bool>(std::getline(expected, expected_line));
+      if (!has_found && !has_expected) return;
       if (found_line != expected_line)
         throw std::runtime_error(base_ + " holds predictions with '" + found_line + "', this run has '" +
                                  expected_line + "': choose another --output, or remove the folder and " + path);
     }
   }
 
-  std::string timesFile() const { return base_ + ".times.csv"; }
-
-  /// Lines cut short by a full disk are left out.
-  void readTimes()
+  FrameTime timeOf(const std::string& scan) const
   {
-    std::ifstream file(timesFile());
-    for (std::string line; std::getline(file, line);)
+    const auto* fields = times_.find(scan);
+    if (fields == nullptr) return {};
+    const auto count = [](const std::string& text) -> std::optional<double>
     {
-      char name[64];
-      FrameTime time;
-      int end = 0;
-      std::sscanf(line.c_str(), "%63[^,],%u,%u,%lf,%lf;%n", name, &time.points, &time.thing_points, &time.cluster_ms,
-                  &time.pipeline_ms, &end);
-      if (end == 0) continue;
-      time.scan = name;
-      times_[time.scan] = time;
-    }
-  }
-
-  /// One write a line, so that threads and shards do not mix theirs, and nothing is lost when the program is killed. A
-  /// line begins with its line break: what a full disk cut short before it stays a line of its own.
-  void appendTime(const FrameTime& time)
-  {
-    char line[160];
-    const int length = std::snprintf(line, sizeof line, "\n%s,%u,%u,%.17g,%.17g;", time.scan.c_str(), time.points,
-                                     time.thing_points, time.cluster_ms, time.pipeline_ms);
-    const int file = ::open(timesFile().c_str(), O_WRONLY | O_CREAT | O_APPEND | O_CLOEXEC, 0666);
-    bool written = file >= 0 && ::write(file, line, static_cast<std::size_t>(length)) == length;
-    const int error = errno;
-    if (file >= 0 && ::close(file) != 0) written = false;
-    if (!written) throw OutputError("cannot write " + timesFile() + ": " + std::strerror(error));
+      const auto number = parseNumber(text);
+      return number && *number >= 0.0 && *number <= std::numeric_limits<std::uint32_t>::max() ? number : std::nullopt;
+    };
+    const auto points = count((*fields)[0]), things = count((*fields)[1]);
+    const auto cluster = parseNumber((*fields)[2]), pipeline = parseNumber((*fields)[3]);
+    if (!points || !things || !cluster || !pipeline) return {};
+    return {scan, static_cast<std::uint32_t>(*points), static_cast<std::uint32_t>(*things), *cluster, *pipeline};
   }
 
   std::string base_;
-  std::map<std::string, FrameTime> times_;  ///< of runs before, by scan
+  ScanLog scans_, times_;
 };
 }  // namespace lidar_panoptic_clustering

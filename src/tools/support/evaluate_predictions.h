@@ -5,6 +5,7 @@
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
 #include "tools/support/known_classes.h"
 #include "tools/support/progress.h"
+#include "tools/support/run_threads.h"
 
 #include <algorithm>
 #include <atomic>
@@ -13,7 +14,6 @@
 #include <mutex>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -43,11 +43,7 @@ public:
   EvaluationReport run()
   {
     Progress progress("evaluating", scans_.size());
-    std::vector<std::thread> threads;
-    const std::size_t jobs = std::min<std::size_t>(static_cast<std::size_t>(set_.jobs), scans_.size());
-    for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back([&] { work(progress); });
-    work(progress);
-    for (std::thread& thread : threads) thread.join();
+    runThreads(std::min(static_cast<std::size_t>(set_.jobs), scans_.size()), [&] { work(progress); });
     if (!fatal_.scan.empty()) throw std::runtime_error(fatal_.reason);
     if (report_.quality.scanCount() == 0)
       throw std::runtime_error("none of the " + std::to_string(scans_.size()) + " scans could be evaluated");

@@ -1,16 +1,15 @@
 #pragma once
 
+#include "core/input_file.h"
+#include "core/printable.h"
 #include "tools/support/interrupt.h"
 
 #include <boost/program_options.hpp>
 
-#include <cerrno>
+#include <cstdint>
 #include <cstdlib>
-#include <cstring>
 #include <exception>
-#include <fstream>
 #include <iostream>
-#include <iterator>
 #include <sstream>
 #include <stdexcept>
 #include <string>
@@ -92,18 +91,14 @@ inline std::vector<std::string> splitAtCommas(const std::string& list, const std
   return names;
 }
 
-/// Throws std::runtime_error with the path and the system's reason.
-inline std::string readTextFile(const std::string& path)
-{
-  std::ifstream file(path, std::ios::binary);
-  if (!file) throw std::runtime_error("cannot read " + path + ": " + std::strerror(errno));
-  return {std::istreambuf_iterator<char>(file), {}};
-}
+/// Most that is read of a report [bytes]; one of a whole data set has some 30 MB.
+constexpr std::uint64_t kMaxReport = std::uint64_t{1} << 29U;
 
-/// Prints a program's result; throws std::runtime_error where standard output takes none (a full disk, a closed pipe).
+/// Prints a program's result, parts of which may come from files; throws std::runtime_error where standard output takes
+/// none (a full disk, a closed pipe).
 inline void printResult(const std::string& text)
 {
-  std::cout << text << std::flush;
+  std::cout << printable(text) << std::flush;
   if (!std::cout) throw std::runtime_error("cannot write to standard output");
 }
 
@@ -128,7 +123,7 @@ int runProgram(const char* name, int argc, char** argv, const Options& options, 
   }
   catch (const std::exception& error)
   {
-    std::cerr << name << ": " << error.what() << "\n";
+    std::cerr << name << ": " << printable(error.what()) << "\n";
     return interrupted() != 0 ? 128 + interrupted() : EXIT_FAILURE;
   }
 }

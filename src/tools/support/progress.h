@@ -1,5 +1,8 @@
 #pragma once
 
+#include "core/plain_numbers.h"
+#include "core/printable.h"
+
 #include <unistd.h>
 
 #include <algorithm>
@@ -46,7 +49,7 @@ public:
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     clearBar();
-    std::fprintf(out_, "%s\n", line.c_str());
+    std::fprintf(out_, "%s\n", printable(line).c_str());
   }
 
   /// Ends the bar's line; called by the destructor too.
@@ -81,6 +84,7 @@ private:
     const double seconds = std::max(std::chrono::duration<double>(Clock::now() - begin_).count(), 1e-6);
     const double rate = static_cast<double>(done_) / seconds;
     const auto left = static_cast<long>(static_cast<double>(total_ - std::min(done_, total_)) / rate + 0.5);
+    const PlainNumbers plain;
     char text[128];
     std::snprintf(text, sizeof text, "%zu/%zu, %.1f a second, %ld:%02ld left", done_, total_, rate, left / 60,
                   left % 60);

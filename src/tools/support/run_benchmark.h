@@ -4,8 +4,10 @@
 #include "tools/support/benchmark_output.h"
 #include "tools/support/benchmark_scans.h"
 #include "tools/support/benchmark_settings.h"
+#include "tools/support/fingerprint.h"
 #include "tools/support/interrupt.h"
 #include "tools/support/progress.h"
+#include "tools/support/run_threads.h"
 #include "tools/support/scan_clusterer.h"
 
 #include <algorithm>
@@ -15,7 +17,6 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
-#include <thread>
 #include <utility>
 #include <vector>
 
@@ -30,7 +31,8 @@ public:
       : settings_(settings), table_(std::move(table)), scans_(settings_, table_), report_(emptyReport())
   {
     if (!settings_.output.empty())
-      for (const RowSettings& row : settings_.rows) outputs_.push_back(std::make_unique<RowOutput>(settings_, row));
+      for (const RowSettings& row : settings_.rows)
+        outputs_.push_back(std::make_unique<RowOutput>(settings_, row, *table_));
     times_.assign(settings_.rows.size(), std::vector<FrameTime>(scans_.size()));
     wrong_.assign(scans_.size(), 0);
   }
@@ -43,11 +45,7 @@ public:
     report_.before.skipped = scans_.skipped();
     {
       Progress progress("benchmark", scans_.size());
-      std::vector<std::thread> threads;
-      const std::size_t jobs = std::min(static_cast<std::size_t>(settings_.jobs), scans_.size());
-      for (std::size_t i = 1; i < jobs; ++i) threads.emplace_back([&] { work(progress); });
-      work(progress);
-      for (std::thread& thread : threads) thread.join();
+      runThreads(std::min(static_cast<std::size_t>(settings_.jobs), scans_.size()), [&] { work(progress); });
     }
     if (failure_) throw std::runtime_error(failure_->reason);
     for (std::size_t row = 0; row < report_.rows.size(); ++row)
@@ -132,6 +130,15 @@ private:
     report_ += worker.report;
   }
 
+  /// Of all that a prediction is made of but the settings.
+  static std::string fingerprintOf(const BenchmarkScan& scan)
+  {
+    Fingerprint fingerprint;
+    fingerprint.add(scan.points);
+    fingerprint.add(scan.classes);
+    return fingerprint.text();
+  }
+
   void fail(std::size_t scan, const std::string& reason)
   {
     stop_ = true;
@@ -143,11 +150,12 @@ private:
   void process(std::size_t i, Worker& worker)
   {
     scans_.read(i, worker.scan);
+    const std::string made_of = outputs_.empty() ? "" : fingerprintOf(worker.scan);
     std::vector<FrameTime> times(settings_.rows.size());
     std::vector<std::size_t> open;
     for (std::size_t row = 0; row < settings_.rows.size(); ++row)
-      if (outputs_.empty() || !outputs_[row]->load(scans_.sequence(i), scans_.scanName(i), worker.scan.points.size(),
-                                                   worker.labels[row], times[row]))
+      if (outputs_.empty() || !outputs_[row]->load(scans_.sequence(i), scans_.scanName(i), made_of,
+                                                   worker.scan.points.size(), worker.labels[row], times[row]))
         open.push_back(row);
     if (!open.empty()) worker.clusterer.project(worker.scan);
     for (const std::size_t row : open)
@@ -158,7 +166,7 @@ private:
     }
     if (!outputs_.empty())
       for (const std::size_t row : open)
-        outputs_[row]->save(scans_.sequence(i), scans_.scanName(i), worker.labels[row], times[row]);
+        outputs_[row]->save(scans_.sequence(i), scans_.scanName(i), made_of, worker.labels[row], times[row]);
     for (std::size_t row = 0; row < settings_.rows.size(); ++row) times_[row][i] = std::move(times[row]);
     if (!worker.scan.truth.empty()) evaluate(i, worker);
     ++used_;

@@ -1,0 +1,81 @@
+#include "lidar_panoptic_clustering/projection/grid_finder.h"
+
+#include <algorithm>
+#include <limits>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+/// Above what a sensor's own beam offsets leave after destaggering, below the least an Ouster's staggered cloud has.
+constexpr double kMaxStaggeredColumns = 2.5;
+
+bool canBeReshaped(const RawCloud& raw)
+{
+  return raw.width > 1 && raw.height > 1 && raw.width != raw.height && raw.row_step == raw.width * raw.point_step;
+}
+
+bool isBetter(const Grid& grid, const Grid& than)
+{
+  if (grid.isStaggered() != than.isStaggered()) return !grid.isStaggered();
+  return grid.isStaggered() ? grid.goesAlongLines() && !than.goesAlongLines() : grid.azimuth_step < than.azimuth_step;
+}
+}  // namespace
+
+RawCloud reshapedView(const RawCloud& raw)
+{
+  RawCloud view;
+  view.width = raw.height, view.height = raw.width;
+  view.point_step = raw.point_step, view.row_step = raw.height * raw.point_step;
+  view.is_bigendian = raw.is_bigendian;
+  view.data = raw.data, view.data_size = raw.data_size;
+  return view;
+}
+
+bool Grid::isStaggered() const
+{
+  return staggered_columns > kMaxStaggeredColumns;
+}
+
+const LayoutProbe& GridFinder::look(const RawCloud& raw, const ScanFields& fields)
+{
+  probe_.look(raw, fields);
+  return probe_;
+}
+
+std::optional<Grid> GridFinder::findDeclared(const RawCloud& raw, const ScanFields& fields)
+{
+  probe_.look(raw, fields);
+  const auto orientation = probe_.orientation();
+  if (!orientation) return std::nullopt;
+  return Grid{false, *orientation, probe_.azimuthStep(*orientation), probe_.elevationStep(*orientation),
+              probe_.staggeredColumns(*orientation)};
+}
+
+std::optional<Grid> GridFinder::find(const RawCloud& raw, const ScanFields& fields)
+{
+  std::optional<Grid> best = findDeclared(raw, fields);
+  if (!canBeReshaped(raw)) return best;
+  if (std::optional<Grid> other = findDeclared(reshapedView(raw), fields))
+  {
+    other->reshaped = true;
+    if (!best || isBetter(*other, *best)) best = other;
+  }
+  probe_.look(best && best->reshaped ? reshapedView(raw) : raw, fields);
+  return best;
+}
+
+const RingOrder& GridFinder::orderLines(const std::vector<ScanPoint>& points, std::uint32_t width,
+                                        Orientation orientation)
+{
+  const auto columns = std::max(1U, width);
+  const std::uint32_t height = static_cast<std::uint32_t>(points.size()) / columns;
+  const bool rows_are_rings = orientation == Orientation::kRowsAreRings;
+  line_of_point_.resize(points.size());
+  for (std::uint32_t i = 0; i < points.size(); ++i)
+    line_of_point_[i] = {hasDirection(points[i]) ? 0.0F : std::numeric_limits<float>::quiet_NaN(),
+                         rows_are_rings ? i / columns : i % columns};
+  order_.look(points, line_of_point_, rows_are_rings ? height : columns);
+  return order_;
+}
+}  // namespace lidar_panoptic_clustering

@@ -1,0 +1,32 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/projection/grid_finder.h"
+#include "lidar_panoptic_clustering/projection/raw_cloud.h"
+
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// What the sequence of a cloud's points looks like, for messages: "firing after firing", "along scan lines" or "in no
+/// order of scan lines". Looks at about a thousand pairs.
+std::string sequenceOf(const std::vector<ScanPoint>& points);
+
+/// A cloud of rows and columns that are no scan lines.
+class NoGrid : public std::invalid_argument
+{
+public:
+  using std::invalid_argument::invalid_argument;
+};
+
+/// The following throw std::invalid_argument with what was expected and what was found.
+[[noreturn]] void throwStaggered(double columns);
+/// `points`: of the cloud, as sent.
+[[noreturn]] void throwNoScanLines(const RawCloud& raw, const std::vector<ScanPoint>& points);
+[[noreturn]] void throwNoRing(const RawCloud& raw);
+[[noreturn]] void throwNoGrid(const RawCloud& raw, const std::vector<ScanPoint>& points);
+[[noreturn]] void throwNotUnfolded(const std::vector<ScanPoint>& points, std::uint32_t sensor_rows);
+/// `share`: of the returns that are hidden, `unavoidable` of it.
+[[noreturn]] void throwHidden(double share, double unavoidable);
+}  // namespace lidar_panoptic_clustering
