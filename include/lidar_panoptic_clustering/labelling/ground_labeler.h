@@ -2,6 +2,7 @@
 
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/core/thing_scan.h"
+#include "lidar_panoptic_clustering/labelling/component_judge.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 #include "lidar_panoptic_clustering/projection/organized_scan.h"
@@ -21,6 +22,7 @@ struct GroundLabelerConfig
   double link_m = 0.7;         ///< the widest gap between neighbouring returns of one thing: a car's side window
   double max_height_m = 4.2;   ///< no object is higher: 4.0 m is the limit for vehicles in most of Europe
   double max_length_m = 20.0;  ///< no object is longer: 18.75 m is the European limit for lorries with trailers
+  std::string structure = "balanced";  ///< or strict: fewer false objects; keep_objects: fewer lost ones
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -32,6 +34,7 @@ struct GroundLabelerConfig
     visitor("link_m", self.link_m, 0.05, 5.0);
     visitor("max_height_m", self.max_height_m, 0.5, 100.0);
     visitor("max_length_m", self.max_length_m, 0.5, 1000.0);
+    visitor("structure", self.structure, structureBiasNames());
   }
 };
 
@@ -39,12 +42,11 @@ struct GroundLabelerConfig
 /// raw ids of the class table "object".
 ///
 /// The ground is followed from under the sensor (see GroundSurface); what hangs together above it (see ScanComponents)
-/// is structure when it is too high, too long or too wide for a vehicle, hovers over it, is as thin as a pole, as rough
-/// as foliage, or stands on the ground like a wall. The limits are sizes of vehicles and people, none is learnt; the
-/// sensor's height over the ground and a tilt of up to 12 degrees each way are found in each scan.
+/// is judged as a whole, but for people, who are found before what they stand at (see ComponentJudge). The sensor's
+/// height over the ground and a tilt of up to 12 degrees each way are found in each scan.
 ///
-/// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side from a wall, and a
-/// person close to something from that thing.
+/// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side down to the ground
+/// from a wall, and a person who leans on something from that thing.
 ///
 /// Not shared between threads; keeps its memory.
 class GroundLabeler
@@ -60,8 +62,8 @@ public:
   void label(LabelledCloud& cloud);
 
   /// Labels the points of a scan whose image label() was given: those that a pixel shows as there, hidden ones by their
-  /// own height over the ground and, above it, as the nearest shown return above the ground within a person's link, which is
-  /// looked for in the 5 x 9 pixels around. Linear in the points.
+  /// own height over the ground and, above it, as the nearest return above the ground that is shown within 0.35 m, in
+  /// the 5 x 9 pixels around; where there is none, as structure. Linear in the points.
   void labelPoints(const OrganizedScan& scan, std::vector<std::uint32_t>& labels) const;
 
   /// Whether the last scan had ground: it has not where there are hardly any returns, or the sensor stands on its head
@@ -71,15 +73,16 @@ public:
   const SlopedPlane& groundPlane() const { return surface_.plane(); }
 
 private:
-  bool isStructure(const ScanComponent& component) const;
+  void judge();
+  std::uint32_t hiddenLabel(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
 
   GroundLabelerConfig config_;
   std::uint32_t ignored_, ground_, structure_, object_;  ///< raw ids
   GroundSurface surface_;
   ScanComponents components_;
+  ComponentJudge judge_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
   std::vector<std::uint32_t> label_of_component_, label_of_part_;
-  std::vector<std::uint8_t> holds_person_;
 };
 }  // namespace lidar_panoptic_clustering
