@@ -60,11 +60,11 @@ ComponentJudge::Bargain ComponentJudge::bargainOf(StructureBias bias)
   switch (bias)
   {
     case StructureBias::kStrict:
-      return {0.33F, 1.3F, 0.5F, 0.4F, 0.6F, true};
+      return {0.33F, 1.3F, 0.5F, 0.4F, 0.6F};
     case StructureBias::kBalanced:
-      return {0.38F, 0.8F, 0.5F, 0.2F, 0.5F, true};
+      return {0.38F, 0.8F, 0.5F, 0.2F, 0.5F};
     case StructureBias::kKeepObjects:
-      return {0.5F, 0.5F, 0.35F, 0.15F, 0.4F, false};
+      return {0.5F, 0.5F, 0.35F, 0.15F, 0.4F};
   }
   throw std::invalid_argument("structure: expected one of its values");
 }
@@ -81,7 +81,9 @@ bool ComponentJudge::isStructure(const ScanComponent& c) const
 bool ComponentJudge::isPole(const ScanComponent& c, const Appearance& a)
 {
   if (a.maybe_tall && a.size.length < 1.0F && (a.tall || c.bottom > 0.5F)) return true;
-  // thinner than a person, from the side too; posts of signs are 0.06 to 0.1 m thick
+  // thinner than a person, from the side too: bollards, posts, small trunks; posts of signs are 0.06 to 0.1 m thick
+  const bool stands = c.bottom < 0.5F && c.top > 1.0F && c.blocked + c.undercut > 0;
+  if (stands && a.size.length < 0.25F) return true;
   return c.top > 1.5F && (a.size.length < 0.18F || (a.size.length < 0.6F && a.size.width < 0.1F));
 }
 
@@ -107,7 +109,6 @@ bool ComponentJudge::isWall(const ScanComponent& c, const Appearance& a) const
 bool ComponentJudge::isVehicle(const ScanComponent& c) const
 {
   constexpr float kSmooth = 0.32F;  // sheet metal with windows
-  if (!bargain_.people_end_structure) return true;
   const Appearance a(c);
   if (a.rough > kSmooth) return false;
   return a.has_feet ? a.undercut >= 0.5F : a.size.width > 1.2F && a.size.length < kCarLength;

@@ -4,6 +4,7 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -72,6 +73,22 @@ void GroundLabeler::judge()
   }
   for (std::uint32_t part = 0; part < parts.size(); ++part)
     if (label_of_part_[part] == ignored_) label_of_part_[part] = label_of_component_[components_.componentOfPart()[part]];
+}
+
+void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels)
+{
+  OrganizedScan& view = view_.of(points);
+  label(view.image.cloud);
+  labelPoints(view, labels);
+}
+
+GroundReport GroundLabeler::ground() const
+{
+  if (!found_ground_) return {};
+  const SlopedPlane& plane = surface_.plane();
+  const double slope = std::hypot(double{plane.slope_x}, double{plane.slope_y});
+  constexpr double kDegrees = 180.0 / 3.14159265358979323846;
+  return {true, plane, -double{plane.offset} / std::hypot(1.0, slope), kDegrees * std::atan(slope)};
 }
 
 void GroundLabeler::labelPoints(const OrganizedScan& scan, std::vector<std::uint32_t>& labels) const

@@ -69,10 +69,15 @@ void ScanLabeller::takeCloud(const RawCloud& labels, const std::string& label_fi
 void ScanLabeller::takeGeometry(OrganizedScan& scan, bool all)
 {
   if (scan.layout == Layout::kMerged)
-    throw std::invalid_argument("expected scan lines, as labels is 'none', found points without: layout 'merged', of a lidar "
-                                "without scan lines or of several lidars");
-  ground_.label(scan.image.cloud);
-  if (all) ground_.labelPoints(scan, scan.labels);
+  {
+    ground_.labelUnordered(scan.points, separate_);
+    labelPoints(scan, separate_);
+  }
+  else
+  {
+    ground_.label(scan.image.cloud);
+    if (all) ground_.labelPoints(scan, scan.labels);
+  }
   mapIds(scan);
 }
 

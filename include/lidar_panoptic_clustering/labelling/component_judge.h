@@ -59,11 +59,10 @@ private:
   /// Thresholds, by bias.
   struct Bargain
   {
-    float most_rough;           ///< share of rough triples in an object
-    float hidden_foot_width;    ///< [m] of what is tall and shows no foot: from there on it may be a van
-    float undercut, cars;       ///< least shares of undercut feet, in general and with a car's outline
-    float least_free;           ///< share of a person's outline
-    bool people_end_structure;  ///< what is around a person and shows nothing of a vehicle is structure
+    float most_rough;         ///< share of rough triples in an object
+    float hidden_foot_width;  ///< [m] of what is tall and shows no foot: from there on it may be a van
+    float undercut, cars;     ///< least shares of undercut feet, in general and with a car's outline
+    float least_free;         ///< share of a person's outline
   };
   static Bargain bargainOf(StructureBias bias);
   static bool isPole(const ScanComponent& c, const Appearance& a);

@@ -4,6 +4,7 @@
 #include "lidar_panoptic_clustering/core/thing_scan.h"
 #include "lidar_panoptic_clustering/labelling/component_judge.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
+#include "lidar_panoptic_clustering/labelling/polar_view.h"
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 #include "lidar_panoptic_clustering/projection/organized_scan.h"
 
@@ -38,6 +39,17 @@ struct GroundLabelerConfig
   }
 };
 
+/// What a scan tells of the ground under the sensor, for diagnostics.
+struct GroundReport
+{
+  /// It has not where there are hardly any returns, or the sensor stands on its head and its driver did not turn the
+  /// cloud round. Then nothing is labelled ground, and the rest means nothing.
+  bool found = false;
+  SlopedPlane plane;
+  double sensor_height_m = 0.0;  ///< over the plane, at right angles to it
+  double slope_deg = 0.0;        ///< of the plane against the sensor's x-y plane: how the sensor is tilted, or the road
+};
+
 /// Labels a scan without any network: ground, structure (walls, fences, poles, trees), and the rest as objects, in the
 /// raw ids of the class table "object".
 ///
@@ -66,10 +78,12 @@ public:
   /// the 5 x 9 pixels around; where there is none, as structure. Linear in the points.
   void labelPoints(const OrganizedScan& scan, std::vector<std::uint32_t>& labels) const;
 
-  /// Whether the last scan had ground: it has not where there are hardly any returns, or the sensor stands on its head
-  /// and its driver did not turn the cloud round. Then nothing is labelled ground.
+  /// Labels points without scan lines, in any order, by a view of them (see PolarView). Linear.
+  void labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels);
+
+  /// Of the last scan.
+  GroundReport ground() const;
   bool foundGround() const { return found_ground_; }
-  /// The plane under the sensor in the last scan.
   const SlopedPlane& groundPlane() const { return surface_.plane(); }
 
 private:
@@ -81,6 +95,7 @@ private:
   GroundSurface surface_;
   ScanComponents components_;
   ComponentJudge judge_;
+  PolarView view_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
   std::vector<std::uint32_t> label_of_component_, label_of_part_;

@@ -57,9 +57,11 @@ public:
   void takeImage(const RawImage& image, OrganizedScan& scan);
   /// `cloud` is what `scan` was made of.
   void takeCloud(const RawCloud& labels, const std::string& label_field, const RawCloud& cloud, OrganizedScan& scan);
-  /// Ground, structure and objects by geometry. The scan's points are labelled `all` only where somebody needs them;
-  /// the pixels always are.
+  /// Ground, structure and objects by geometry, with scan lines or without. The scan's points are labelled `all` only
+  /// where somebody needs them; the pixels always are.
   void takeGeometry(OrganizedScan& scan, bool all);
+  /// What the last geometry tells of the ground.
+  GroundReport ground() const { return ground_.ground(); }
 
   /// Of the labels that go out.
   const std::shared_ptr<const ClassTable>& classTable() const { return class_table_; }
