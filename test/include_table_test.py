@@ -7,7 +7,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 PACKAGE = 'lidar_panoptic_clustering'
-ROS_FOLDERS = {'ros', 'reporting', 'nodelets', 'bags'}
+ROS_FOLDERS = {'ros', 'reporting', 'nodelets', 'manager', 'bags'}
 ROS_HEADERS = re.compile(r'(ros|nodelet|pluginlib|pcl_ros|pcl_conversions|rosbag|tf2\w*|diagnostic_updater|'
                          r'dynamic_reconfigure|\w+_msgs|std_srvs|xmlrpcpp)/')
 

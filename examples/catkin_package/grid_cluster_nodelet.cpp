@@ -22,9 +22,9 @@ class GridClusterNodelet : public nodelet::Nodelet
     auto& nh = getPrivateNodeHandle();
     const auto table = lpc::ClassTable::load(nh.param<std::string>("class_table", "semantic_kitti"));
     // what surrounds the algorithm, selection and refinement, is the package's own
-    pipeline_ = std::make_unique<lpc::FramePipeline>(std::make_shared<const lpc::ClassTable>(table),
-                                                     lpc::PipelineConfig(),
-                                                     std::make_unique<GridClusterer>(nh.param("cell_m", 0.4)));
+    pipeline_ =
+        std::make_unique<lpc::FramePipeline>(std::make_shared<const lpc::ClassTable>(table), lpc::PipelineConfig(),
+                                             std::make_unique<GridClusterer>(nh.param("cell_m", 0.4)));
     output_ = nh.advertise<lpc::PanopticCloud>("output", 1);
     input_ = nh.subscribe<lpc::LabelledCloud>(
         "input", 1, [this](const boost::shared_ptr<const lpc::LabelledCloud>& cloud) { process(*cloud); });

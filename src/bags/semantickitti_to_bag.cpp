@@ -35,6 +35,8 @@ Options describeOptions()
   options.add_options()("sequence", textValue("SS", config.sequence), "which of its sequences");
   options.add_options()("semantics", textValue("DIR", ""),
                         "take the points' classes from DIR/sequences/SS/predictions instead of the true ones");
+  options.add_options()("label-table", textValue("FILE", ""),
+                        "what their ids mean, e.g. semantic_kitti_training (default: the class table)");
   options.add_options()("output", textValue("FILE"), "the bag");
   options.add_options()("first", po::value<long>()->value_name("N")->default_value(0), "first scan");
   options.add_options()("count", po::value<long>()->value_name("N"), "how many scans; otherwise all from the first on");
@@ -65,6 +67,7 @@ SequenceBagConfig configOf(const Given& given)
   config.output = required(given, "output");
   config.sequence = given["sequence"].as<std::string>();
   config.semantics = given["semantics"].as<std::string>();
+  config.label_table = given["label-table"].as<std::string>();
   config.first = number(given, "first", 0);
   if (isGiven(given, "count")) config.count = number(given, "count", 1);
   config.compression = given["compression"].as<std::string>();
@@ -90,6 +93,7 @@ int run(const Given& given)
   };
   const SequenceBagSummary summary = writeSequenceBag(config, progress);
   bar.reset();
+  if (!summary.doubt.empty()) std::fprintf(stderr, "semantickitti_to_bag: %s\n", summary.doubt.c_str());
   std::printf("%s: %llu scans, %llu points, %.1f MB; labels: %s, ground truth: %s, tf: %s\n", config.output.c_str(),
               static_cast<unsigned long long>(summary.scans), static_cast<unsigned long long>(summary.points),
               static_cast<double>(summary.bytes) / 1e6, summary.labelled ? "yes" : "no",

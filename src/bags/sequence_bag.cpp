@@ -7,6 +7,7 @@
 
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
+#include "lidar_panoptic_clustering/datasets/predicted_classes.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -16,6 +17,7 @@
 #include <cmath>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <vector>
 
@@ -122,7 +124,7 @@ class SequenceBagWriter
 public:
   explicit SequenceBagWriter(const SequenceBagConfig& config)
       : config_(config),
-        table_(ClassTable::load(config.class_table)),
+        table_(std::make_shared<const ClassTable>(ClassTable::load(config.class_table))),
         sequence_(config.dataset, config.sequence, config.semantics),
         projector_(config.projection),
         poses_(sequence_.readPoses()),
@@ -135,6 +137,11 @@ public:
     if (config.first >= sequence_.size())
       throw std::invalid_argument("first: expected one of the scans 0 to " + std::to_string(sequence_.size() - 1) +
                                   " of sequence " + sequence_.name() + ", found " + std::to_string(config.first));
+    if (!config.label_table.empty() && config.semantics.empty())
+      throw std::invalid_argument("label table: expected predictions whose ids it says, found none");
+    if (config.semantics.empty()) return;
+    predicted_.emplace(sequence_, table_, config.label_table);
+    summary_.doubt = predicted_->doubt();
   }
 
   SequenceBagSummary write(const SequenceBagProgress& progress)
@@ -173,7 +180,7 @@ private:
     bag.write("/points", header.stamp, message_);
     if (!truth_.empty())
     {
-      paintGroundTruth(projection_, truth_, table_, ground_truth_);
+      paintGroundTruth(projection_, truth_, *table_, ground_truth_);
       pcl::toROSMsg(ground_truth_, message_);
       message_.header = header;
       bag.write("/ground_truth", header.stamp, message_);
@@ -190,7 +197,7 @@ private:
     sequence_.readScan(scan, points_);
     truth_.clear();
     if (sequence_.hasLabels()) sequence_.readLabels(scan, points_.size(), truth_);
-    if (!config_.semantics.empty()) sequence_.readPredictions(scan, points_.size(), predictions_);
+    if (predicted_) predicted_->read(sequence_, scan, points_.size(), predictions_);
   }
 
   ros::Time stampOf(std::size_t scan) const
@@ -203,8 +210,9 @@ private:
   }
 
   const SequenceBagConfig& config_;
-  ClassTable table_;
+  std::shared_ptr<const ClassTable> table_;
   SemanticKittiSequence sequence_;
+  std::optional<PredictedClasses> predicted_;
   PointProjector projector_;
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<double> times_;

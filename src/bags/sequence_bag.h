@@ -11,7 +11,8 @@ namespace lidar_panoptic_clustering
 struct SequenceBagConfig
 {
   std::string dataset, sequence = "00";
-  std::string semantics;  ///< folder of predictions whose classes the points get; empty: the true ones
+  std::string semantics;    ///< folder of predictions whose classes the points get; empty: the true ones
+  std::string label_table;  ///< of their ids; empty: the class table
   std::string output;
   std::string class_table = "semantic_kitti";
   std::string frame_id = "velodyne";
@@ -26,6 +27,7 @@ struct SequenceBagSummary
 {
   std::uint64_t scans = 0, points = 0, bytes = 0;
   bool labelled = false, ground_truth = false, poses = false;
+  std::string doubt;  ///< which other tables the predictions may be of, see PredictedClasses
 };
 
 /// Told at the start and after each scan how many are written and how many it will be; false ends the work without a

@@ -133,7 +133,7 @@ void LabelNumbering::count(const LabelledCloud& image, const std::vector<std::ui
     ++same;
   };
   for (const LabelledPoint& point : image.points)
-    if (std::isfinite(point.x)) next(point.label);
+    if (isReturn(point)) next(point.label);
   for (const std::uint32_t id : hidden) next(id);
   if (same > 0) add(last, same);
 }

@@ -9,9 +9,9 @@ namespace
 {
 constexpr std::uint64_t kShapeScans = 100;  // an id not seen for so long is not judged by its shape any more
 
-constexpr double kFewPairs = 200.0, kManyPairs = 8000.0;
+constexpr double kFewPairs = 80.0, kManyPairs = 8000.0;
 constexpr double kFlatShare = 0.85, kUprightShare = 0.5, kLongShare = 0.5, kGroundShare = 0.2;
-constexpr std::uint32_t kColumnStep = 8, kRowStep = 4;
+constexpr std::uint32_t kColumnStep = 4, kRowStep = 4;
 constexpr float kFlatSlope = 0.3F, kSteepSlope = 1.0F;
 constexpr float kRunGap = 0.5F;  // [m]
 }  // namespace
@@ -24,7 +24,7 @@ void LabelNumbering::lookAtShapes(const LabelledCloud& image)
     {
       const LabelledPoint &p = image.points[row * image.width + column],
                           &q = image.points[(row + 1) * image.width + column];
-      if (p.label != q.label || !std::isfinite(p.x) || !std::isfinite(q.x)) continue;
+      if (p.label != q.label || !isReturn(p) || !isReturn(q)) continue;
       const float dot = p.x * q.x + p.y * q.y, cross = p.x * q.y - p.y * q.x;
       if (!(std::abs(cross) < 0.02F * dot)) continue;  // not above one another
       const float rise = std::abs(p.z - q.z), run = std::hypot(p.x - q.x, p.y - q.y);
@@ -50,7 +50,7 @@ void LabelNumbering::lookAlongLines(const LabelledCloud& image)
     for (std::uint32_t column = 0; column < image.width; ++column)
     {
       const LabelledPoint& p = image.points[row * image.width + column];
-      if (!std::isfinite(p.x)) continue;
+      if (!isReturn(p)) continue;
       const auto gap = [&] { return std::hypot(p.x - last->x, p.y - last->y, p.z - last->z); };
       if (first == nullptr || p.label != first->label || gap() > kRunGap)
       {

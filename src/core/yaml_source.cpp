@@ -111,7 +111,11 @@ std::string describeYaml(const YAML::Node& node)
 {
   constexpr std::size_t kMostShown = 60;
   if (node.IsScalar()) return printable(node.Scalar().substr(0, kMostShown), false);
-  return node.IsSequence() ? "a list" : node.IsMap() ? "a map" : "nothing";
+  if (!node.IsSequence()) return node.IsMap() ? "a map" : "nothing";
+  std::string list;
+  for (std::size_t i = 0; i < node.size() && list.size() < kMostShown; ++i)
+    list += (i == 0 ? "" : ", ") + (node[i].IsScalar() ? node[i].Scalar() : std::string(".."));
+  return printable("[" + list.substr(0, kMostShown) + "]", false);
 }
 
 std::vector<std::string> namesOf(const std::map<std::string, std::string>& shipped)

@@ -3,7 +3,10 @@
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 
 #include <array>
+#include <cmath>
+#include <cstring>
 #include <filesystem>
+#include <optional>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -12,11 +15,32 @@ namespace fs = std::filesystem;
 namespace
 {
 constexpr std::uint32_t kMaxInstance = 0xFFFFU;
+
+/// Whether each label but 0 is, bit for bit, a whole number as float32, which the class ids of no file all are. Returns
+/// the first of them, else nothing.
+std::optional<float> firstFloat(const std::vector<std::uint32_t>& labels)
+{
+  constexpr float kLargestId = 65535.0F;
+  std::optional<float> first;
+  for (const std::uint32_t label : labels)
+  {
+    if (label == 0) continue;
+    float number = 0.0F;
+    std::memcpy(&number, &label, sizeof(number));
+    if (!(number >= -1.0F && number <= kLargestId) || number != std::floor(number)) return std::nullopt;
+    if (!first) first = number;
+  }
+  return first;
+}
 }  // namespace
 
 void readLabelFile(const std::string& path, std::vector<std::uint32_t>& labels)
 {
   readBinaryFile(path, labels);
+  if (const auto number = firstFloat(labels))
+    throw std::runtime_error(path + ": expected uint32 labels, found float32 numbers, the first of them " +
+                             std::to_string(std::lround(*number)) +
+                             ": write them as integers (numpy: labels.astype('<u4').tofile(..))");
 }
 
 void writeLabelFile(const std::string& path, const std::vector<std::uint32_t>& labels)

@@ -13,6 +13,7 @@
 #include <optional>
 #include <sstream>
 #include <stdexcept>
+#include <utility>
 
 namespace lidar_panoptic_clustering
 {
@@ -110,6 +111,12 @@ std::optional<Eigen::Isometry3d> readCalibration(const std::string& path)
 
 void readLabelsOf(const std::string& path, std::size_t point_count, std::vector<std::uint32_t>& labels)
 {
+  const std::uintmax_t bytes = point_count > 0 && fs::exists(path) ? fs::file_size(path) : 0;
+  for (const auto& [type, size] : {std::pair{"uint8", 1}, std::pair{"uint16", 2}, std::pair{"int64", 8}})
+    if (bytes == point_count * static_cast<std::size_t>(size) && bytes > 0)
+      throw std::runtime_error(path + ": expected " + std::to_string(point_count) +
+                               " uint32 labels, one a point, found " + std::to_string(bytes) + " bytes, as many as " +
+                               type + " has: write them as uint32 (numpy: labels.astype('<u4').tofile(..))");
   readLabelFile(path, labels);
   if (labels.size() != point_count)
     throw std::runtime_error(path + ": expected " + std::to_string(point_count) + " labels, one a point, found " +

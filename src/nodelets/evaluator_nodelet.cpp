@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/evaluation/object_errors.h"
 #include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
 #include "ros/cloud_subscription.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 #include "ros/stamp_matcher.h"
 
@@ -72,6 +73,7 @@ private:
     auto& nh = getPrivateNodeHandle();
     try
     {
+      warnOfUnusedParameters(nh, namesOf(describeParameters(config_), {"class_table"}));
       applyParameters(config_, readParameters(nh, describeParameters(config_)));
       table_ =
           std::make_shared<const ClassTable>(ClassTable::load(nh.param<std::string>("class_table", "semantic_kitti")));
@@ -79,13 +81,17 @@ private:
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
     matcher_ = std::make_unique<StampMatcher<CloudPtr>>(static_cast<std::size_t>(config_.queue_size));
     startAgain();
-    for (Figure& figure : figures_) figure.publisher = nh.advertise<std_msgs::Float64>(figure.name, 10);
+    for (Figure& figure : figures_) figure.publisher = advertiseAlone<std_msgs::Float64>(nh, figure.name, 10);
 
-    updater_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), nh, getName());
+    {
+      const std::lock_guard<std::mutex> lock(linkMutex());
+      updater_ = std::make_unique<diagnostic_updater::Updater>(getNodeHandle(), nh, getName());
+    }
     updater_->setHardwareID("none");
     updater_->add("panoptic quality", this, &EvaluatorNodelet::report);
     timer_ = nh.createWallTimer(ros::WallDuration(1.0), [this](const ros::WallTimerEvent&) { updater_->update(); });

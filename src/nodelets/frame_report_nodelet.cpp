@@ -6,6 +6,7 @@
 #include "reporting/report_output.h"
 #include "reporting/stage_message.h"
 #include "ros/cloud_subscription.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -29,10 +30,10 @@ namespace
 struct ReportConfig
 {
   std::string algorithm = "all";  ///< or names with commas between them
-  int frames = 0;           ///< of each algorithm, then the process ends; 0 for no end
-  double timeout_s = 15.0;  ///< without a new frame, then the process ends
-  std::string picture;      ///< PNG file
-  std::string report;       ///< file for the lines, standard output when empty
+  int frames = 0;                 ///< of each algorithm, then the process ends; 0 for no end
+  double timeout_s = 15.0;        ///< without a new frame, then the process ends
+  std::string picture;            ///< PNG file
+  std::string report;             ///< file for the lines, standard output when empty
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -97,13 +98,15 @@ private:
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
     // one callback at a time: a nodelet's handles share a queue that sees to it
     for (const auto& algorithm : algorithms_)
-      stages_.push_back(getNodeHandle().subscribe<diagnostic_msgs::DiagnosticArray>(
-          algorithm + "/stages", kQueue,
-          [this, algorithm](const diagnostic_msgs::DiagnosticArrayConstPtr& m) { receiveFigures(algorithm, *m); }));
+      stages_.push_back(subscribeChecked<diagnostic_msgs::DiagnosticArray>(
+          getNodeHandle(), algorithm + "/stages", kQueue,
+          [this, algorithm](const diagnostic_msgs::DiagnosticArrayConstPtr& m) { receiveFigures(algorithm, *m); },
+          onError()));
     last_frame_ = ros::WallTime::now();
     watchdog_ =
         getNodeHandle().createWallTimer(ros::WallDuration(0.1), [this](const ros::WallTimerEvent&) { watch(); });
@@ -113,22 +116,27 @@ private:
   /// all there, so that all of them get the first scan.
   void subscribeToClouds()
   {
-    const auto on_error = [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); };
     clouds_.push_back(subscribeChecked<LabelledCloud>(
         getPrivateNodeHandle(), "input", kQueue,
         [this](const boost::shared_ptr<const LabelledCloud>& cloud)
         {
           if (report_) report_->sent(cloud->header.stamp);
         },
-        on_error));
+        onError()));
     for (const auto& algorithm : algorithms_)
       clouds_.push_back(subscribeChecked<PanopticCloud>(
           getNodeHandle(), algorithm + "/output", kQueue,
-          [this, algorithm](const CloudPtr& cloud) { receiveCloud(algorithm, cloud); }, on_error));
+          [this, algorithm](const CloudPtr& cloud) { receiveCloud(algorithm, cloud); }, onError()));
+  }
+
+  MessageErrorCallback onError()
+  {
+    return [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); };
   }
 
   void load()
   {
+    warnOfUnusedParameters(getPrivateNodeHandle(), namesOf(describeParameters(config_)));
     applyParameters(config_, readParameters(getPrivateNodeHandle(), describeParameters(config_)));
     algorithms_ = algorithmsOfList(config_.algorithm);
     for (const auto& algorithm : algorithms_) tracks_[algorithm];

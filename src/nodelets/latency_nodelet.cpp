@@ -4,6 +4,7 @@
 #include "reporting/report_output.h"
 #include "reporting/stage_message.h"
 #include "ros/cloud_subscription.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -93,28 +94,32 @@ private:
   {
     try
     {
+      warnOfUnusedParameters(getPrivateNodeHandle(), namesOf(describeParameters(config_)));
       applyParameters(config_, readParameters(getPrivateNodeHandle(), describeParameters(config_)));
       printer_.open(config_.report);
     }
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
     report_ = std::make_unique<LatencyReport>(static_cast<std::size_t>(config_.warm_up),
                                               static_cast<std::size_t>(config_.frames));
     last_scan_ = ros::WallTime::now();
     auto& nh = getMTPrivateNodeHandle();
-    const boost::function<void(const ros::MessageEvent<const Stages>&)> on_stages = [this](const auto& event)
-    { receiveStages(event); };
-    stages_ = nh.subscribe<Stages>("stages", kQueue, on_stages, {}, ros::TransportHints().tcpNoDelay());
+    stages_ = subscribeChecked<Stages>(
+        nh, "stages", kQueue,
+        [this](const boost::shared_ptr<const Stages>& message, const Arrival& arrival)
+        { receiveStages(*message, arrival); },
+        onError());
     input_ = subscribeChecked<LabelledCloud>(
         nh, "input", kQueue, [this](const auto& cloud) { receiveInput(*cloud); }, onError(), &input_queue_);
     watchdog_ =
         getNodeHandle().createWallTimer(ros::WallDuration(0.1), [this](const ros::WallTimerEvent&) { watch(); });
   }
 
-  CloudErrorCallback onError()
+  MessageErrorCallback onError()
   {
     return [this](const std::string& error) { NODELET_ERROR("%s", error.c_str()); };
   }
@@ -137,16 +142,15 @@ private:
     endIfComplete();
   }
 
-  void receiveStages(const ros::MessageEvent<const Stages>& event)
+  void receiveStages(const Stages& message, const Arrival& arrival)
   {
-    const Stages& message = *event.getConstMessage();
     if (message.status.empty()) return;
     std::uint64_t stamp = 0;
     pcl_conversions::toPCL(message.header.stamp, stamp);
     const double work_ms = readStageMessage(message.status.front()).totalMilliseconds();
     const std::lock_guard<std::mutex> lock(mutex_);
     algorithm_ = message.status.front().hardware_id;
-    graph_ = event.getPublisherName() == ros::this_node::getName() ? "one manager" : "across processes";
+    graph_ = arrival.sender == ros::this_node::getName() ? "one manager" : "across processes";
     if (report_) report_->worked(stamp, work_ms);
     endIfComplete();
   }

@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
+#include "ros/linking.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 
 #include <geometry_msgs/TransformStamped.h>
@@ -82,6 +84,7 @@ private:
     auto& nh = getPrivateNodeHandle();
     try
     {
+      warnOfUnusedParameters(nh, namesOf(describeParameters(SimulatorConfig()), {"frames", "frame_id", "sensor"}));
       frames_ = readConfig<NodeletConfig>(nh).frames;
       frame_id_ = readFrameId(nh);
       simulator_ = std::make_unique<LidarSimulator>(SensorModel::load(readName(nh, "sensor", "hdl64e")),
@@ -89,12 +92,16 @@ private:
     }
     catch (const std::exception& error)
     {
-      NODELET_FATAL("%s: %s", getName().c_str(), error.what());
+      NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
-    output_ = nh.advertise<LabelledCloud>("output", 2);
-    ground_truth_ = nh.advertise<PanopticCloud>("ground_truth", 2);
-    broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    output_ = advertiseAlone<LabelledCloud>(nh, "output", 2);
+    ground_truth_ = advertiseAlone<PanopticCloud>(nh, "ground_truth", 2);
+    {
+      const std::lock_guard<std::mutex> lock(linkMutex());
+      broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    }
     // a wall timer, so that it drives also with use_sim_time while nobody publishes /clock
     timer_ = nh.createWallTimer(ros::WallDuration(1.0 / simulator_->config().rate_hz),
                                 [this](const ros::WallTimerEvent&) { tick(); });
@@ -102,6 +109,7 @@ private:
 
   void tick()
   {
+    if (ros::isShuttingDown()) return;  // publishing on what was advertised while ROS ended is fatal
     if (frames_ > 0 && published_ >= frames_) return timer_.stop();
     const std::uint64_t frame = frame_++;
     pcl::PCLHeader header;

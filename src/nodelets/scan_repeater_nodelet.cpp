@@ -1,6 +1,7 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "ros/cloud_subscription.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 
 #include <nodelet/nodelet.h>
@@ -54,14 +55,16 @@ private:
     auto& nh = getPrivateNodeHandle();
     try
     {
+      warnOfUnusedParameters(nh, namesOf(describeParameters(config_)));
       applyParameters(config_, readParameters(nh, describeParameters(config_)));
     }
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
-    output_ = nh.advertise<LabelledCloud>("output", kQueue);
+    output_ = advertiseAlone<LabelledCloud>(nh, "output", kQueue);
     // timer and input share the nodelet's queue: one callback at a time
     input_ = subscribeChecked<LabelledCloud>(
         nh, "input", kQueue, [this](const CloudPtr& cloud) { collect(cloud); },

@@ -1,6 +1,9 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/datasets/ground_truth_cloud.h"
+#include "lidar_panoptic_clustering/datasets/predicted_classes.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
+#include "ros/linking.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 #include "ros/pose_message.h"
 
@@ -15,6 +18,7 @@
 #include <cmath>
 #include <cstdio>
 #include <memory>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <vector>
@@ -74,10 +78,10 @@ std::string readFrameId(const ros::NodeHandle& nh)
 
 /// Plays a sequence of a SemanticKITTI folder, see semantic_kitti.h, as organised clouds.
 ///
-/// ~output: labelled cloud, with the classes of the folder `semantics`, or else the true ones (0 where there are none);
-/// ~ground_truth: the same pixels with true classes and the data set's own instance ids, which are unique within a
-/// class only; tf: world -> frame_id where there are poses. All three carry the same stamp, in whole microseconds, as
-/// that is what a PCL header keeps.
+/// ~output: labelled cloud, with the classes of the folder `semantics` (ids of `label_table`), or else the true ones (0
+/// where there are none); ~ground_truth: the same pixels with true classes and the data set's own instance ids, which
+/// are unique within a class only; tf: world -> frame_id where there are poses. All three carry the same stamp, in
+/// whole microseconds, as that is what a PCL header keeps.
 class SemanticKittiPlayerNodelet : public nodelet::Nodelet
 {
 private:
@@ -90,12 +94,16 @@ private:
     catch (const std::exception& error)
     {
       NODELET_FATAL("not loaded: %s", error.what());
+      announceLoadFailure(getName(), error.what());
       throw;
     }
     auto& nh = getPrivateNodeHandle();
-    output_ = nh.advertise<LabelledCloud>("output", kQueue);
-    ground_truth_ = nh.advertise<PanopticCloud>("ground_truth", kQueue);
-    broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    output_ = advertiseAlone<LabelledCloud>(nh, "output", kQueue);
+    ground_truth_ = advertiseAlone<PanopticCloud>(nh, "ground_truth", kQueue);
+    {
+      const std::lock_guard<std::mutex> lock(linkMutex());
+      broadcaster_ = std::make_unique<tf2_ros::TransformBroadcaster>();
+    }
     // a wall timer, so that it plays also with use_sim_time while nobody publishes /clock
     timer_ =
         nh.createWallTimer(ros::WallDuration(1.0 / config_.rate_hz), [this](const ros::WallTimerEvent&) { tick(); });
@@ -104,16 +112,18 @@ private:
   void load()
   {
     const auto& nh = getPrivateNodeHandle();
+    warnOfUnusedParameters(
+        nh, namesOf(describeParameters(config_), {"frame_id", "class_table", "dataset", "sequence", "semantics"}));
     applyParameters(config_, readParameters(nh, describeParameters(config_)));
     frame_id_ = readFrameId(nh);
-    table_ = std::make_unique<ClassTable>(ClassTable::load(readText(nh, "class_table", "semantic_kitti")));
+    table_ = std::make_shared<const ClassTable>(ClassTable::load(readText(nh, "class_table", "semantic_kitti")));
     const auto dataset = readText(nh, "dataset", "");
     if (dataset.empty())
       throw std::invalid_argument("parameter " + nh.resolveName("dataset") +
                                   " must name a folder with sequences/SS/velodyne, but is not set");
     const auto semantics = readText(nh, "semantics", "");
-    predicted_ = !semantics.empty();
     sequence_ = std::make_unique<SemanticKittiSequence>(dataset, readSequenceName(nh), semantics);
+    if (!semantics.empty()) loadPredicted(readText(nh, "label_table", ""));
     poses_ = sequence_->readPoses();
     if (!poses_.empty() && !sequence_->hasCalibration())
       NODELET_WARN(
@@ -126,8 +136,15 @@ private:
     projector_ = std::make_unique<PointProjector>(config_.projection);
   }
 
+  void loadPredicted(const std::string& label_table)
+  {
+    predicted_.emplace(*sequence_, table_, label_table);
+    if (!predicted_->doubt().empty()) NODELET_WARN("%s", predicted_->doubt().c_str());
+  }
+
   void tick()
   {
+    if (ros::isShuttingDown()) return;  // publishing on what was advertised while ROS ended is fatal
     if (!started_ && output_.getNumSubscribers() < static_cast<std::uint32_t>(config_.wait_for_subscribers)) return;
     started_ = true;
     try
@@ -158,7 +175,7 @@ private:
     sequence_->readScan(scan, points_);
     truth_.clear();
     if (sequence_->hasLabels()) sequence_->readLabels(scan, points_.size(), truth_);
-    if (predicted_) sequence_->readPredictions(scan, points_.size(), predictions_);
+    if (predicted_) predicted_->read(*sequence_, scan, points_.size(), predictions_);
     projector_->project(points_, predicted_ ? predictions_ : truth_, projection_);
 
     pcl::PCLHeader header;
@@ -199,10 +216,10 @@ private:
 
   PlayerConfig config_;
   std::string frame_id_;
-  std::unique_ptr<ClassTable> table_;
+  std::shared_ptr<const ClassTable> table_;
   std::unique_ptr<SemanticKittiSequence> sequence_;
   std::unique_ptr<PointProjector> projector_;
-  bool predicted_ = false;
+  std::optional<PredictedClasses> predicted_;
   std::vector<Eigen::Isometry3d> poses_;
   std::vector<double> times_;
 

@@ -34,10 +34,10 @@ private:
 
 [[noreturn]] void throwNoScanLines(std::size_t points)
 {
-  throw std::invalid_argument("expected scan lines (rows of an organised cloud), found one row of " +
-                              std::to_string(points) +
-                              " points that do not come in one sweep, as of a lidar without scan lines or of several "
-                              "lidars merged: use an algorithm that works on points alone (birds_eye, euclidean, supervoxel)");
+  throw std::invalid_argument(
+      "expected scan lines (rows of an organised cloud), found one row of " + std::to_string(points) +
+      " points that do not come in one sweep, as of a lidar without scan lines or of several "
+      "lidars merged: use an algorithm that works on points alone (birds_eye, euclidean, supervoxel)");
 }
 /// The name of its class, "my_package::MyClusterer".
 std::string nameOf(const Clusterer& clusterer)
@@ -90,6 +90,7 @@ void FramePipeline::segment(const LabelledCloud& in)
 try
 {
   Stopwatch stopwatch;
+  colored_ = false;
   if (in.height == 1 && clusterer_->needsScanLines() && !comesInOneSweep(in)) throwNoScanLines(in.size());
   selectThings(in, *table_, selection_, things_);
   times_.select_ms = stopwatch.lap();
@@ -107,6 +108,12 @@ catch (...)
   things_ = ThingScan();
   instances_ = Instances();  // half a scan's would not fit any cloud
   throw;
+}
+
+const std::vector<std::uint32_t>& FramePipeline::colors()
+{
+  if (!std::exchange(colored_, true)) colors_.follow(instances_);
+  return colors_.colors();
 }
 
 void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
@@ -132,7 +139,7 @@ void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
     ++from;
   }
 
-  const auto& colors = colors_.follow(instances_);
+  const auto& colors = this->colors();
   for (std::uint32_t row = 0; row < things_.rows; ++row)
   {
     PanopticPoint* line = out.points.data() + static_cast<std::size_t>(row) * things_.columns;

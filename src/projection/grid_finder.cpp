@@ -15,10 +15,15 @@ bool canBeReshaped(const RawCloud& raw)
   return raw.width > 1 && raw.height > 1 && raw.width != raw.height && raw.row_step == raw.width * raw.point_step;
 }
 
+/// A scan line has the finest steps that go along it; steps over several firings may look less staggered by that.
 bool isBetter(const Grid& grid, const Grid& than)
 {
+  constexpr double kFiner = 0.7;
+  if (grid.goesAlongLines() != than.goesAlongLines()) return grid.goesAlongLines();
+  if (grid.azimuth_step < kFiner * than.azimuth_step) return true;
+  if (than.azimuth_step < kFiner * grid.azimuth_step) return false;
   if (grid.isStaggered() != than.isStaggered()) return !grid.isStaggered();
-  return grid.isStaggered() ? grid.goesAlongLines() && !than.goesAlongLines() : grid.azimuth_step < than.azimuth_step;
+  return grid.azimuth_step < than.azimuth_step;
 }
 }  // namespace
 

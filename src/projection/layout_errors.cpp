@@ -67,26 +67,27 @@ void throwNoRing(const RawCloud& raw)
 
 void throwNoGrid(const RawCloud& raw, const std::vector<ScanPoint>& points)
 {
-  throw NoGrid("expected rows or columns that are scan lines, each of one elevation, found " +
-                              size(raw) + " whose points come " + sequenceOf(points) +
-                              " and whose elevation varies within a row and a column as in the whole cloud: publish one "
-                              "row of points with a field 'ring', or set layout to 'ring', 'beams' (and sensor) or "
-                              "'merged'");
+  throw NoGrid("expected rows or columns that are scan lines, each of one elevation, found " + size(raw) +
+               " whose points come " + sequenceOf(points) +
+               " and whose elevation varies within a row and a column as in the whole cloud: publish one "
+               "row of points with a field 'ring', or set layout to 'ring', 'beams' (and sensor) or "
+               "'merged'");
 }
 
 void throwNotUnfolded(const std::vector<ScanPoint>& points, std::uint32_t sensor_rows)
 {
-  throw std::invalid_argument("expected points ring after ring, each ring a sweep of one elevation" +
-                              (sensor_rows > 0 ? ", as many as the sensor's " + std::to_string(sensor_rows) + " beams"
-                                               : std::string()) +
-                              ", found points " + sequenceOf(points) + " that make no such rings");
+  throw std::invalid_argument(
+      "expected points ring after ring, each ring a sweep of one elevation" +
+      (sensor_rows > 0 ? ", as many as the sensor's " + std::to_string(sensor_rows) + " beams" : std::string()) +
+      ", found points " + sequenceOf(points) + " that make no such rings");
 }
 
 void throwHidden(double share, double unavoidable)
 {
-  throw std::invalid_argument("expected at most " + percent(unavoidable) +
-                              " of the returns behind others of their pixel, found " + percent(share) +
-                              ": the cloud is no single scan of one lidar (for several lidars or scans in one cloud set "
-                              "layout to 'merged'), or it is not in the sensor's own frame");
+  throw std::invalid_argument(
+      "expected at most " + percent(unavoidable) + " of the returns behind others of their pixel, found " +
+      percent(share) +
+      ": the cloud is no single scan of one lidar (for several lidars or scans in one cloud set "
+      "layout to 'merged'), or it is not in the sensor's own frame");
 }
 }  // namespace lidar_panoptic_clustering

@@ -24,7 +24,8 @@ public:
   std::uint32_t labelNear(const ScanPoint& point, std::uint32_t pixel, std::uint32_t no_class) const
   {
     const float range = std::hypot(point.x, point.y);
-    const float limit = std::max(kLimitM, kLimitColumns * range * kFullTurn / static_cast<float>(width_));
+    const float spacing = range * kFullTurn / static_cast<float>(width_);
+    const float limit = std::min(kMostM, std::max(kLeastM, kLimitColumns * spacing));
     float least = limit * limit;  // NaN without a return: nothing is near
     std::uint32_t nearest = no_class;
     const int row = static_cast<int>(pixel) / width_, column = static_cast<int>(pixel) % width_;
@@ -42,7 +43,8 @@ public:
   }
 
 private:
-  static constexpr float kLimitM = 0.1F, kLimitColumns = 2.0F;
+  // by the last one no object grows by more than that
+  static constexpr float kLeastM = 0.1F, kLimitColumns = 2.0F, kMostM = 0.2F;
 
   const LabelledCloud& cloud_;
   int width_, height_;

@@ -86,7 +86,9 @@ void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& d
   FoundLayout& found = decision.found;
   const RingOrder& order = grid_.orderLines(out.points, view.width, found.orientation);
   if (order.tellsNothing() && found.doubt.empty()) throwNoGrid(view, out.points);
-  if (order.isMonotone() || order.areDistinct())
+  const bool clear = order.isMonotone() || order.areDistinct();
+  if (found.reshaped && !clear) throwNoGrid(view, out.points);
+  if (clear)
   {
     decision.placement.row_of_line = order.rowOfRing();
   }
@@ -125,8 +127,9 @@ void Organizer::followRows(const RawCloud& raw, const ScanFields& fields, Organi
     if (Grid{false, found.orientation, 0.0, 0.0, probe.staggeredColumns(found.orientation)}.isStaggered() &&
         orientation == found.orientation)
       contradicts("staggered columns");
-    if (!decision_.placement.row_of_line.empty() ? probe.agreement(found.orientation, decision_.placement.row_of_line) < kLeastAgreement
-                                       : !probe.highestFirst(found.orientation).value_or(true))
+    if (!decision_.placement.row_of_line.empty()
+            ? probe.agreement(found.orientation, decision_.placement.row_of_line) < kLeastAgreement
+            : !probe.highestFirst(found.orientation).value_or(true))
       contradicts("sequence of rows");
     if (!orientation && climbs(probe, found.orientation) && found.doubt.empty()) contradicts("no scan lines");
   }

@@ -46,8 +46,7 @@ void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>&
 
 void DirectionProjector::project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
                                  const std::vector<PointDirection>& directions, std::uint32_t rows,
-                                 std::uint32_t columns, std::uint32_t class_bits, Projection& out,
-                                 float shift)
+                                 std::uint32_t columns, std::uint32_t class_bits, Projection& out, float shift)
 {
   const std::size_t pixels = std::size_t{rows} * columns;
   out.pixel_of_point.resize(scan.size());

@@ -29,7 +29,7 @@ void RingOrder::sum(const std::vector<ScanPoint>& scan, const std::vector<PointD
 {
   rings_.assign(rings, Ring());
   // a small scan is looked at whole
-  const std::size_t step = scan.size() < 64 * std::size_t{rings} ? 1 : 13;
+  const std::size_t step = scan.size() < 256 * std::size_t{rings} ? 1 : 13;
   for (std::size_t i = 0; i < scan.size(); i += step)
   {
     if (std::isnan(directions[i].azimuth)) continue;
@@ -143,8 +143,8 @@ bool RingOrder::tellsNothing() const
     count += ring.count;
   }
   if (seen_ < 2 || count < kFewest || count < 4 * static_cast<std::uint32_t>(seen_)) return false;
-  const double whole = sum_of_squares / count - (sum / count) * (sum / count);
-  return whole > kNoVariance && within / count > 0.95 * whole;
+  const double whole = (sum_of_squares - sum * sum / count) / (count - 1);
+  return whole > kNoVariance && within / (count - static_cast<std::uint32_t>(seen_)) > 0.95 * whole;
 }
 
 void RingOrder::sortByElevation()

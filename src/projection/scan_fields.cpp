@@ -19,11 +19,11 @@ struct UsualNames
 // Autoware: class_id; ouster-ros and Livox: reflectivity; SemanticKITTI: remission; kitti2bag: i; SICK: intensities;
 // hesai, robosense and ouster-ros: ring
 constexpr UsualNames kLabel = {"label_field", "class ids", {"label", "class_id", "semantic", "class"}};
-constexpr UsualNames kIntensity = {"intensity_field",
-                                   "intensities",
-                                   {"intensity", "reflectivity", "remission", "i", "intensities", "reflectance",
-                                    "remissions", "Intensity", "Reflectivity", "Remission", "Reflectance", "I",
-                                    "INTENSITY"}};
+constexpr UsualNames kIntensity = {
+    "intensity_field",
+    "intensities",
+    {"intensity", "reflectivity", "remission", "i", "intensities", "reflectance", "remissions", "Intensity",
+     "Reflectivity", "Remission", "Reflectance", "I", "INTENSITY"}};
 constexpr UsualNames kRing = {"ring_field", "ring numbers", {"ring", "channel"}};
 
 const RawField* find(const RawCloud& cloud, const char* name)

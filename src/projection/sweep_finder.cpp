@@ -84,9 +84,9 @@ Sweep SweepFinder::bestStart(bool clockwise) const
     run = good(i) ? run + 1 : 0;
     if (run > length) length = run, begin = i + 1 - run;
   }
-  const float middle = turn((static_cast<float>(begin) + 0.5F * static_cast<float>(length)) *
-                            (kFullTurn / static_cast<float>(kBins)) -
-                            (begin + length / 2 >= kBins ? kFullTurn : 0.0F));
+  const float middle =
+      turn((static_cast<float>(begin) + 0.5F * static_cast<float>(length)) * (kFullTurn / static_cast<float>(kBins)) -
+           (begin + length / 2 >= kBins ? kFullTurn : 0.0F));
   const float azimuth = clockwise ? -middle : middle;
   return {clockwise, std::remainder(azimuth, kFullTurn)};
 }

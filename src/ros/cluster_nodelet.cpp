@@ -2,7 +2,7 @@
 
 #include "reporting/stage_message.h"
 #include "ros/cloud_subscription.h"
-#include "ros/instance_markers.h"
+#include "ros/load_failure.h"
 #include "ros/parameter_server.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -14,22 +14,26 @@ void ClusterNodelet::onInit()
   try
   {
     load();
+    thread_ = std::thread(&ClusterNodelet::work, this);
   }
   catch (const std::exception& error)
   {
     NODELET_FATAL("not loaded: %s", error.what());
+    announceLoadFailure(getName(), error.what());
     throw;
   }
-  diagnostics_.start(getNodeHandle(), getPrivateNodeHandle(), getName());
-  thread_ = std::thread(&ClusterNodelet::work, this);
-
-  // connect() may run in the manager's thread as soon as advertise() is under way: keep it out until both are there
-  const std::lock_guard<std::mutex> lock(connect_mutex_);
-  const ros::SubscriberStatusCallback status = [this](const ros::SingleSubscriberPublisher&) { connect(); };
-  auto& nh = getPrivateNodeHandle();
-  output_ = nh.advertise<PanopticCloud>("output", 1, status, status);
-  markers_ = nh.advertise<visualization_msgs::MarkerArray>("markers", 1, status, status);
-  stages_ = nh.advertise<diagnostic_msgs::DiagnosticArray>("stages", 10);
+  diagnostics_.start(getNodeHandle(), getPrivateNodeHandle(), getName(), [this] { return describeIdle(); });
+  latched_.start(
+      getPrivateNodeHandle(),
+      [this]
+      {
+        const std::lock_guard<std::mutex> lock(connect_mutex_);
+        return input_.getNumPublishers() > 0;
+      },
+      [this](const CloudPtr& cloud) { mailbox_.put(cloud); });
+  advertise();
+  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  connect();
 }
 
 void ClusterNodelet::load()
@@ -42,8 +46,24 @@ void ClusterNodelet::load()
   const ParameterMap given_table = readParameters(nh, {table_info});
   const auto table_name = std::get<std::string>(given_table.empty() ? table_info.value : given_table.at("class_table"));
   const auto table = std::make_shared<const ClassTable>(ClassTable::load(table_name));
+
+  std::vector<std::string> of_others;
+  for (const std::string& other : algorithmNames()) of_others = namesOf(algorithmParameters(other), of_others);
+  diagnostics_.setWarning(
+      "parameters", warnOfUnusedParameters(nh, namesOf(algorithmParameters(algorithm_), {table_info.name}), of_others));
   pipeline_ = std::make_unique<FramePipeline>(table, algorithm.pipeline, std::move(algorithm.clusterer));
   startReconfigure();
+}
+
+void ClusterNodelet::advertise()
+{
+  // connect() may run in the manager's thread as soon as advertise() is under way: keep it out until both are there
+  const std::lock_guard<std::mutex> lock(connect_mutex_);
+  const ros::SubscriberStatusCallback status = [this](const ros::SingleSubscriberPublisher&) { connect(); };
+  auto& nh = getPrivateNodeHandle();
+  output_ = advertiseAlone<PanopticCloud>(nh, "output", 1, status, status);
+  markers_ = advertiseAlone<visualization_msgs::MarkerArray>(nh, "markers", 1, status, status);
+  stages_ = advertiseAlone<diagnostic_msgs::DiagnosticArray>(nh, "stages", 10);
 }
 
 void ClusterNodelet::shutdown()
@@ -56,6 +76,7 @@ void ClusterNodelet::shutdown()
   if (thread_.joinable()) thread_.join();
   // each of these waits for its callback under way; without the lock, which connect() may be waiting for
   diagnostics_.stop();
+  latched_.stop();
   stopReconfigure();
   input_.shutdown();
   output_.shutdown();
@@ -80,15 +101,29 @@ void ClusterNodelet::connect()
   const std::lock_guard<std::mutex> lock(connect_mutex_);
   if (closed_) return;
   if (output_.getNumSubscribers() + markers_.getNumSubscribers() == 0)
+  {
     input_.shutdown();
+    latched_.forget();
+  }
   else if (!input_)
+  {
+    diagnostics_.expectScans();
     input_ = subscribeChecked<LabelledCloud>(
         getPrivateNodeHandle(), "input", 1,
-        [this](const CloudPtr& cloud)
+        [this](const CloudPtr& cloud, const Arrival& arrival)
         {
+          latched_.received(cloud, arrival.latched);
           if (mailbox_.put(cloud)) diagnostics_.overwritten();
         },
         [this](const std::string& error) { refuse(error); });
+  }
+}
+
+Idle ClusterNodelet::describeIdle()
+{
+  const std::lock_guard<std::mutex> lock(connect_mutex_);
+  return lidar_panoptic_clustering::describeIdle(output_.getNumSubscribers() + markers_.getNumSubscribers(),
+                                                 output_.getTopic() + " or " + markers_.getTopic(), input_);
 }
 
 void ClusterNodelet::refuse(const std::string& error)
@@ -129,8 +164,8 @@ void ClusterNodelet::process(const LabelledCloud& cloud)
   if (markers_.getNumSubscribers() > 0)
   {
     const auto& boxes = boxes_.fit(pipeline_->things(), pipeline_->instances());
-    markers_.publish(boost::make_shared<visualization_msgs::MarkerArray>(
-        instanceMarkers(pcl_conversions::fromPCL(cloud.header), pipeline_->table(), pipeline_->instances(), boxes)));
+    markers_.publish(list_.update(pcl_conversions::fromPCL(cloud.header), pipeline_->table(), pipeline_->instances(),
+                                  boxes, pipeline_->colors(), ros::Time::now()));
   }
   const StageTimes& times = pipeline_->times();
   const StreamDiagnostics::StageMilliseconds stages = {{"select", times.select_ms},

@@ -3,6 +3,8 @@
 #include "lidar_panoptic_clustering/pipeline/factory.h"
 #include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/refinement/instance_boxes.h"
+#include "ros/instance_markers.h"
+#include "ros/latched_input.h"
 #include "ros/mailbox.h"
 #include "ros/stream_diagnostics.h"
 
@@ -25,7 +27,8 @@ namespace lidar_panoptic_clustering
 /// outputs that are listened to.
 ///
 /// The callback puts the newest scan into a mailbox of one; a thread of the nodelet's own works on it. A scan that
-/// cannot be used is dropped, logged and shown in the diagnostics; the next one is looked at afresh.
+/// cannot be used is dropped, logged and shown in the diagnostics; the next one is looked at afresh. The scan of a
+/// latched input is worked on once a second, for those who begin to listen later.
 ///
 /// Parameters: ~class_table, a table that ships with the package or a YAML file; and those of the algorithm.
 class ClusterNodelet : public nodelet::Nodelet
@@ -51,7 +54,9 @@ private:
   using CloudPtr = boost::shared_ptr<const LabelledCloud>;
 
   void load();
+  void advertise();
   void connect();
+  Idle describeIdle();
   void refuse(const std::string& error);
   void work();
   void process(const LabelledCloud& cloud);
@@ -61,6 +66,7 @@ private:
   const std::string algorithm_;
   std::unique_ptr<FramePipeline> pipeline_;  ///< the thread's own once it runs
   InstanceBoxes boxes_;
+  InstanceMarkers list_;
   std::set<std::uint32_t> warned_labels_;
   StreamDiagnostics diagnostics_;
 
@@ -71,6 +77,7 @@ private:
   bool closed_ = false;
   ros::Publisher output_, markers_, stages_;
   ros::Subscriber input_;
+  LatchedInput<LabelledCloud> latched_;
   Mailbox<CloudPtr> mailbox_;
   std::thread thread_;
 };

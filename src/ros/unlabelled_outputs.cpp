@@ -1,5 +1,7 @@
 #include "ros/unlabelled_outputs.h"
 
+#include "ros/linking.h"
+
 #include <sensor_msgs/image_encodings.h>
 
 #include <cmath>
@@ -71,9 +73,9 @@ sensor_msgs::ImagePtr intensityImage(const std_msgs::Header& header, const Label
 
 void UnlabelledOutputs::advertise(ros::NodeHandle& nh, const ros::SubscriberStatusCallback& status)
 {
-  cloud_ = nh.advertise<sensor_msgs::PointCloud2>("unlabelled", 1, status, status);
-  range_ = nh.advertise<sensor_msgs::Image>("range", 1, status, status);
-  intensity_ = nh.advertise<sensor_msgs::Image>("intensity", 1, status, status);
+  cloud_ = advertiseAlone<sensor_msgs::PointCloud2>(nh, "unlabelled", 1, status, status);
+  range_ = advertiseAlone<sensor_msgs::Image>(nh, "range", 1, status, status);
+  intensity_ = advertiseAlone<sensor_msgs::Image>(nh, "intensity", 1, status, status);
 }
 
 void UnlabelledOutputs::shutdown()

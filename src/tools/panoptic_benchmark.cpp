@@ -59,6 +59,9 @@ Options describeOptions()
   options.add_options()("plot", textValue("DIR"), "write charts, and a figure of each sequence's worst scan");
   options.add_options()("class-table", textValue("FILE"),
                         "YAML file, or the name of a table that ships with the package (default: semantic_kitti)");
+  options.add_options()(
+      "label-table", textValue("FILE"),
+      "what the class ids of --semantics mean, e.g. semantic_kitti_training (default: the class table)");
   options.add_options()("columns", numberValue(2048), "of the range image");
   options.add_options()("keep-going", "skip scans that cannot be used and count them in the report");
   options.add_options()("labels", textValue("none", "classes"),
@@ -92,6 +95,9 @@ BenchmarkSettings readSettings(const Given& given)
   if (isGiven(given, "split")) settings.sequences = semanticKittiSplit(textOf(given, "split"));
   settings.semantics = fs::path(textOf(given, "semantics")).lexically_normal().string();
   if (isGiven(given, "class-table")) settings.class_table = textOf(given, "class-table");
+  settings.label_table = textOf(given, "label-table");
+  if (!settings.label_table.empty() && settings.semantics.empty())
+    throw std::invalid_argument("--label-table says what the ids of --semantics mean, which is not given");
   std::vector<std::string> algorithms;
   if (isGiven(given, "algorithms")) algorithms = splitAtCommas(textOf(given, "algorithms"), "--algorithms");
   if (isGiven(given, "switches") && isGiven(given, "survey"))

@@ -212,7 +212,9 @@ TEST(ClassTable, LoadsAFileAndSaysWhatThereIsWhereItCannot)
     {
       EXPECT_EQ(std::string(error.what()), "class table '" + name +
                                                "': cannot be read; expected a YAML file or one of nuscenes, "
-                                               "object, semantic_kitti");
+                                               "nuscenes_training, nuscenes_training_less_one, object, "
+                                               "semantic_kitti, semantic_kitti_training, "
+                                               "semantic_kitti_training_less_one");
     }
 }
 
@@ -230,7 +232,10 @@ TEST(ClassTable, FilesThatNeverEndAreNotBegunWith)
 
 TEST(ClassTable, ShippedTablesAreTheFilesOfConfig)
 {
-  EXPECT_EQ(ClassTable::shippedNames(), std::vector<std::string>({"nuscenes", "object", "semantic_kitti"}));
+  EXPECT_EQ(
+      ClassTable::shippedNames(),
+      std::vector<std::string>({"nuscenes", "nuscenes_training", "nuscenes_training_less_one", "object",
+                                "semantic_kitti", "semantic_kitti_training", "semantic_kitti_training_less_one"}));
   for (const auto& name : ClassTable::shippedNames())
   {
     const ClassTable shipped = ClassTable::load(name), file = ClassTable::load("config/" + name + ".yaml");
@@ -280,6 +285,47 @@ TEST(ClassTable, SemanticKittiIsItsOfficialLearningMap)
   EXPECT_EQ(found_things, things);
   EXPECT_EQ(found_stuff, stuff);
   EXPECT_EQ(found_ignored, std::set<std::uint32_t>({0, 1, 52, 99}));
+}
+
+/// learning_map of semantic-kitti-api, and the order of nuScenes' challenge.
+TEST(ClassTable, TrainingIdsAreTheirDataSets)
+{
+  const std::vector<std::string> kitti = {"car",      "bicycle",      "motorcycle",   "truck",       "other-vehicle",
+                                          "person",   "bicyclist",    "motorcyclist", "road",        "parking",
+                                          "sidewalk", "other-ground", "building",     "fence",       "vegetation",
+                                          "trunk",    "terrain",      "pole",         "traffic-sign"};
+  const std::vector<std::string> nuscenes = {
+      "barrier",    "bicycle",      "bus",     "car",       "construction_vehicle", "motorcycle",
+      "pedestrian", "traffic_cone", "trailer", "truck",     "driveable_surface",    "other_flat",
+      "sidewalk",   "terrain",      "manmade", "vegetation"};
+  for (const auto& [name, classes] : {std::make_pair(std::string("semantic_kitti"), kitti), {"nuscenes", nuscenes}})
+  {
+    const ClassTable raw = ClassTable::load(name), from_one = ClassTable::load(name + "_training"),
+                     from_zero = ClassTable::load(name + "_training_less_one");
+    ASSERT_EQ(raw.size(), classes.size() + 2) << name;
+    for (std::uint32_t i = 0; i < classes.size(); ++i)
+      for (const ClassInfo& info : {from_one[from_one.find(i + 1)], from_zero[from_zero.find(i)]})
+      {
+        EXPECT_EQ(info.name, classes[i]) << name << " " << i;
+        const ClassInfo& same = raw[raw.findByName(classes[i])];
+        EXPECT_EQ(info.kind, same.kind) << info.name;
+        EXPECT_EQ(info.rgb, same.rgb) << info.name;
+        EXPECT_EQ(info.length_m, same.length_m) << info.name;
+        EXPECT_EQ(info.link_distance_m, same.link_distance_m) << info.name;
+        EXPECT_EQ(info.aliases, same.aliases) << info.name;
+      }
+    EXPECT_EQ(from_one[from_one.find(0)].name, "ignored");
+    EXPECT_EQ(from_zero[from_zero.find(255)].name, "ignored");
+    EXPECT_FALSE(raw.ignoresMinusOne() || from_one.ignoresMinusOne());
+    EXPECT_TRUE(from_zero.ignoresMinusOne());
+  }
+}
+
+TEST(ClassTable, MinusOneIsIgnoredOrNothing)
+{
+  const std::string classes = "classes: [{name: road, kind: stuff, ids: [40], color: [1, 2, 3]}]";
+  EXPECT_TRUE(ClassTable::parse("minus_one: ignored\n" + classes, "my.yaml").ignoresMinusOne());
+  EXPECT_EQ(errorOf("minus_one: road\n" + classes), "my.yaml: minus_one must be 'ignored', or not there");
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

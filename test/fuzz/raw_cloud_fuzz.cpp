@@ -49,7 +49,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
         for (int scan = 0; scan < 2; ++scan)  // the second by what the first has taught
         {
           organizer.organize(raw, out);
-          mustHold(out.cloud.size() == std::size_t{out.cloud.width} * out.cloud.height, "width x height points");
+          mustHold(out.image.cloud.size() == std::size_t{out.image.cloud.width} * out.image.cloud.height,
+                   "width x height points");
         }
       });
   return 0;

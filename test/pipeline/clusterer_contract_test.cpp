@@ -125,7 +125,7 @@ TEST(ClustererContract, SparseReturnsWithSmallSeeds)
     for (int i = 0; i < 150; ++i)
     {
       std::vector<LabelledPoint> things;
-      for (unsigned k = 0, n = random() % 40; k < n; ++k)
+      for (auto n = random() % 40; n > 0; --n)
         things.push_back(labelled(40.0F + place(random), place(random), 0.25F * place(random), kCar));
       expectContract(clusterer, rowOf(things));
     }

@@ -228,7 +228,8 @@ TEST(Organizer, FieldsHaveConfigurableNames)
 TEST(Organizer, FieldsAreFoundByTheirUsualNames)
 {
   for (const char* label : {"label", "class_id", "semantic", "class"})
-    for (const char* intensity : {"intensity", "reflectivity", "remission", "i", "intensities", "Intensity", "reflectance"})
+    for (const char* intensity :
+         {"intensity", "reflectivity", "remission", "i", "intensities", "Intensity", "reflectance"})
     {
       auto scan = syntheticScan(16, 90);
       scan.header.fields[3].name = intensity;

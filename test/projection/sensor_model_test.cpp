@@ -147,21 +147,31 @@ TEST(SensorModel, NamesFileKeyExpectedAndFoundInEachError)
   EXPECT_EQ(errorOf("{elevations_deg: [.nan], columns: 4}"),
             "my.yaml: elevation of ring 0: expected an angle between -90 and 90 degrees, found nan");
   EXPECT_EQ(errorOf("{elevations_deg: [0]}"), "my.yaml: has no 'columns', expected the number of firings");
-  EXPECT_EQ(errorOf("{elevations_deg: [0], columns: -1}"),
-            "my.yaml: 'columns': expected the number of firings, found -1");
+  EXPECT_EQ(errorOf("{elevations_deg: [0], columns: -1}"), "my.yaml: columns: expected 1 to 65536, found -1");
+  EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4294967296}"),
+            "my.yaml: columns: expected 1 to 65536, found 4294967296");
+  EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 1e3}"),
+            "my.yaml: 'columns': expected the number of firings, found 1e3");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 0}"), "my.yaml: columns: expected 1 to 65536, found 0");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, horizontal_fov_deg: 0}"),
-            "my.yaml: horizontal field of view: expected above 0 and at most 360 degrees, found 0");
+            "my.yaml: horizontal field of view: expected 0.1 to 360 degrees, found 0");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, horizontal_fov_deg: 400}"),
-            "my.yaml: horizontal field of view: expected above 0 and at most 360 degrees, found 400");
+            "my.yaml: horizontal field of view: expected 0.1 to 360 degrees, found 400");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, max_range_m: 0.1}"),
-            "my.yaml: max_range_m: expected finite and more than min_range_m, found 0.1");
+            "my.yaml: max_range_m: expected more than min_range_m and at most 10000, found 0.1");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, max_range_m: far}"),
             "my.yaml: 'max_range_m': expected a distance, found far");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, dropout: 2}"),
             "my.yaml: dropout: expected a probability, found 2");
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, mount_height_m: 0}"),
-            "my.yaml: mount_height_m: expected more than 0, found 0");
+            "my.yaml: mount_height_m: expected 0.01 to 1000, found 0");
+  for (const std::string key : {"horizontal_fov_deg", "min_range_m", "max_range_m", "range_noise_m", "mount_height_m"})
+    for (const std::string number : {"-1", ".nan", ".inf", "1e30"})
+      EXPECT_NE(errorOf("{elevations_deg: [0], columns: 4, " + key + ": " + number + "}").find(": expected "),
+                std::string::npos)
+          << key << " " << number;
+  for (const std::string key : {"horizontal_fov_deg", "max_range_m", "mount_height_m"})
+    EXPECT_NE(errorOf("{elevations_deg: [0], columns: 4, " + key + ": 1e-30}"), "") << key;
   EXPECT_EQ(errorOf("{elevations_deg: [0], columns: 4, colums: 5}"),
             "my.yaml: unknown key 'colums', expected one of name, elevations_deg, columns, horizontal_fov_deg, "
             "min_range_m, max_range_m, range_noise_m, dropout, mount_height_m");

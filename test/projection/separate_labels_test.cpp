@@ -4,6 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <cstring>
+#include <utility>
+
 namespace lidar_panoptic_clustering
 {
 namespace
@@ -57,6 +61,47 @@ TEST(LabelImage, readsSignedIdsOfEitherByteOrder)
   EXPECT_EQ(read(imageOf(big, "32SC1", 12, true)), expected);
 }
 
+/// The bytes of six numbers, and the same of the other byte order.
+template <class T>
+std::pair<Bytes, Bytes> bytesOf(const std::vector<T>& numbers)
+{
+  Bytes little(numbers.size() * sizeof(T)), big(little.size());
+  std::memcpy(little.data(), numbers.data(), little.size());
+  for (std::size_t i = 0; i < big.size(); ++i)
+    big[i] = little[i / sizeof(T) * sizeof(T) + sizeof(T) - 1 - i % sizeof(T)];
+  return {little, big};
+}
+
+template <class T>
+void expectRead(const std::string& encoding, const std::vector<T>& numbers, const Labels& expected)
+{
+  const auto [little, big] = bytesOf(numbers);
+  const auto step = static_cast<std::uint32_t>(3 * sizeof(T));
+  EXPECT_EQ(read(imageOf(little, encoding, step)), expected) << encoding;
+  EXPECT_EQ(read(imageOf(big, encoding, step, true)), expected) << encoding << ", big-endian";
+}
+
+TEST(LabelImage, readsEveryNumberType)
+{
+  const std::uint32_t none = kUnreadableLabel;
+  expectRead<std::int8_t>("8SC1", {0, 1, 18, 127, -1, -128}, {0, 1, 18, 127, none, none});
+  expectRead<std::int16_t>("16SC1", {0, 252, 259, 32767, -1, -100}, {0, 252, 259, 32767, none, none});
+  expectRead<std::int32_t>("32SC1", {0, 252, 65546, 2147483647, -1, -100}, {0, 252, 65546, 2147483647, none, none});
+  expectRead<float>("32FC1", {0.0F, 252.0F, 16777216.0F, 0.5F, -1.0F, NAN}, {0, 252, 16777216, none, none, none});
+  expectRead<double>("64FC1", {0.0, 252.0, 4294967294.0, 0.5, -1.0, INFINITY}, {0, 252, 4294967294, none, none, none});
+}
+
+TEST(LabelImage, readsRowsLongerThanAPieceOfTheOtherByteOrder)
+{
+  std::vector<std::uint16_t> numbers(2 * 1000);
+  for (std::size_t i = 0; i < numbers.size(); ++i) numbers[i] = static_cast<std::uint16_t>(31 * i);
+  const Bytes big = bytesOf(numbers).second;
+  const RawImage image{1000, 2, 2000, true, "mono16", big.data(), big.size()};
+  Labels labels;
+  readLabelImage(image, 2, 1000, labels);
+  EXPECT_EQ(labels, Labels(numbers.begin(), numbers.end()));
+}
+
 TEST(LabelImage, ofAnotherSizeIsRefused)
 {
   const Bytes bytes(6);
@@ -74,8 +119,9 @@ TEST(LabelImage, ofAnotherSizeIsRefused)
 TEST(LabelImage, ofAnotherEncodingIsRefused)
 {
   const Bytes bytes(18);
-  EXPECT_EQ(errorOfReading(imageOf(bytes, "rgb8", 9)),
-            "expected a label image of encoding mono8, 8UC1, mono16, 16UC1, 32SC1, found 'rgb8'");
+  EXPECT_EQ(
+      errorOfReading(imageOf(bytes, "rgb8", 9)),
+      "expected a label image of encoding mono8, 8UC1, 8SC1, mono16, 16UC1, 16SC1, 32SC1, 32FC1, 64FC1, found 'rgb8'");
 }
 
 TEST(LabelImage, thatContradictsItselfIsRefused)

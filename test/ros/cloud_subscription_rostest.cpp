@@ -1,5 +1,6 @@
 #include "ros/cloud_subscription.h"
 
+#include "damaged_cloud.h"
 #include "raw_message.h"
 
 #include <gtest/gtest.h>
@@ -163,6 +164,58 @@ TEST(CloudSubscription, SubscriberThatIsGoneIsNotCalled)
   EXPECT_EQ(second.errors.size(), 1U);
 }
 
+/// Several subscribers of sensor_msgs/PointCloud2 share what roscpp makes of a message.
+TEST(CloudSubscription, DamagedMessageIsReportedToEverySubscriberOfItsOwnType)
+{
+  ros::NodeHandle nh;
+  Receiver<sensor_msgs::PointCloud2> first(nh, "damaged"), second(nh, "damaged");
+  const auto publisher = advertise<DamagedCloud>(nh, "damaged");
+  const auto good = toRos(twoPoints(NumberType::kFloat32, NumberType::kUint8, 0));
+  publisher.publish(boost::make_shared<DamagedCloud>(DamagedCloud{*good}));
+  const auto whole = advertise<sensor_msgs::PointCloud2>(nh, "damaged");
+  whole.publish(good);
+  for (auto* receiver : {&first, &second})
+  {
+    receiver->wait(2);
+    ASSERT_EQ(receiver->errors.size(), 1U);
+    EXPECT_NE(receiver->errors[0].find("expected a whole sensor_msgs/PointCloud2, found that its "), std::string::npos)
+        << receiver->errors[0];
+    ASSERT_EQ(receiver->clouds.size(), 1U);
+    EXPECT_EQ(receiver->clouds[0].get(), good.get()) << "the way by pointer is kept";
+  }
+}
+
+TEST(CloudSubscription, ArrivalTellsHowAMessageCame)
+{
+  ros::NodeHandle nh;
+  ros::CallbackQueue queue;
+  std::vector<Arrival> arrivals;
+  const auto subscriber = subscribeChecked<sensor_msgs::PointCloud2>(
+      nh, "arrivals", 10,
+      [&](const sensor_msgs::PointCloud2ConstPtr&, const Arrival& arrival) { arrivals.push_back(arrival); },
+      [](const std::string& error) { ADD_FAILURE() << error; }, &queue);
+  const auto receive = [&](const ros::Publisher& publisher, auto message)
+  {
+    const std::size_t before = arrivals.size();
+    publisher.publish(message);
+    for (int i = 0; i < 100 && arrivals.size() == before; ++i) queue.callAvailable(ros::WallDuration(0.05));
+    return arrivals.empty() ? Arrival() : arrivals.back();
+  };
+  const auto cloud = toRos(twoPoints(NumberType::kFloat32, NumberType::kUint8, 0));
+  auto publisher = advertise<sensor_msgs::PointCloud2>(nh, "arrivals");
+  Arrival arrival = receive(publisher, cloud);
+  EXPECT_TRUE(arrival.by_pointer);
+  EXPECT_FALSE(arrival.latched);
+  EXPECT_EQ(arrival.sender, ros::this_node::getName());
+  EXPECT_FALSE(receive(publisher, *cloud).by_pointer) << "published by reference, as most drivers do";
+  publisher.shutdown();
+
+  publisher = nh.advertise<sensor_msgs::PointCloud2>("arrivals", 1, true);
+  for (int i = 0; i < 100 && publisher.getNumSubscribers() == 0; ++i) ros::WallDuration(0.05).sleep();
+  arrival = receive(publisher, cloud);
+  EXPECT_TRUE(arrival.latched);
+}
+
 TEST(CloudSubscription, PanopticCloudsKeepTheirIds)
 {
   ros::NodeHandle nh;
@@ -190,12 +243,58 @@ TEST(CloudSubscription, PanopticCloudsKeepTheirIds)
   EXPECT_NE(receiver.errors[0].find("expected a field 'instance'"), std::string::npos) << receiver.errors[0];
 }
 
+template <class Message>
+std::vector<std::uint8_t> serialized(const Message& message)
+{
+  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(message));
+  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
+  ros::serialization::serialize(stream, message);
+  return bytes;
+}
+
+/// Read again it is the same; each part of it is refused.
+template <class Message>
+void expectReadWholeOnly(const Message& message)
+{
+  const std::vector<std::uint8_t> bytes = serialized(message);
+  for (std::uint32_t size = 0; size < bytes.size(); ++size)
+  {
+    std::vector<std::uint8_t> part(bytes.begin(), bytes.begin() + size);
+    Message read;
+    EXPECT_THROW(readSerialized(part.data(), size, read), std::runtime_error) << size;
+  }
+  std::vector<std::uint8_t> whole = bytes;
+  Message read;
+  readSerialized(whole.data(), static_cast<std::uint32_t>(whole.size()), read);
+  EXPECT_EQ(serialized(read), bytes);
+}
+
+TEST(ReadSerialized, MessagesThatStayWhatTheyAreAreReadWholeOrNotAtAll)
+{
+  auto cloud = *toRos(twoPoints(NumberType::kFloat64, NumberType::kUint16, 3));
+  cloud.is_dense = 1;
+  expectReadWholeOnly(cloud);
+
+  sensor_msgs::Image image;
+  image.header.frame_id = "camera";
+  image.height = 2, image.width = 3, image.step = 3;
+  image.encoding = "mono8";
+  image.data = {1, 2, 3, 4, 5, 6};
+  expectReadWholeOnly(image);
+
+  diagnostic_msgs::DiagnosticArray diagnostics;
+  diagnostics.header.stamp = ros::Time(1.5);
+  diagnostics.status.resize(2);
+  diagnostics.status[1].name = "nodelet";
+  diagnostics.status[1].values.resize(1);
+  diagnostics.status[1].values[0].key = "things";
+  expectReadWholeOnly(diagnostics);
+}
+
 TEST(ReadSerialized, TruncatedMessagesAreRefused)
 {
   const auto message = toRos(twoPoints(NumberType::kFloat32, NumberType::kUint8, 0));
-  std::vector<std::uint8_t> bytes(ros::serialization::serializationLength(*message));
-  ros::serialization::OStream stream(bytes.data(), static_cast<std::uint32_t>(bytes.size()));
-  ros::serialization::serialize(stream, *message);
+  const std::vector<std::uint8_t> bytes = serialized(*message);
   LabelledCloud cloud;
   readSerialized(bytes.data(), static_cast<std::uint32_t>(bytes.size()), cloud);
   expectTwoPoints(cloud);

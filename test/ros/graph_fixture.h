@@ -140,7 +140,7 @@ private:
   Probe<diagnostic_msgs::DiagnosticArray> probe_;
 };
 
-/// What this process logs.
+/// What this process and others log.
 class LogProbe
 {
 public:
@@ -149,15 +149,17 @@ public:
     EXPECT_TRUE(eventually([this] { return probe_.subscriber().getNumPublishers() > 0; }));
   }
 
-  /// The first message from now on that contains `part`; "", with a failed test, when there is none.
-  std::string waitFor(const std::string& part)
+  /// The first message from now on that contains `part`, of the node if one is given; "", with a failed test, when
+  /// there is none.
+  std::string waitFor(const std::string& part, const std::string& node = "")
   {
     std::string text;
     const bool found = eventually(
         [&]
         {
           while (const auto message = probe_.takeIfThere())
-            if ((text = message->msg).find(part) != std::string::npos) return true;
+            if ((text = message->msg).find(part) != std::string::npos && (node.empty() || message->name == node))
+              return true;
           return false;
         });
     EXPECT_TRUE(found) << "no log message with '" << part << "', the last one was '" << text << "'";

@@ -114,7 +114,7 @@ protected:
 
 TEST_F(Latency, LaunchFileMeasuresOneManagerAndTwoProcessesAndEnds)
 {
-  if (kSanitized) GTEST_SKIP();
+  if (kSanitized) GTEST_SKIP() << "the nodelet manager of the system lacks the sanitizer's runtime";
   for (const auto& [separate, graph] : {std::pair("false", "one manager"), std::pair("true", "across processes")})
   {
     SCOPED_TRACE(graph);
@@ -134,7 +134,7 @@ TEST_F(Latency, LaunchFileMeasuresOneManagerAndTwoProcessesAndEnds)
 
 TEST_F(Latency, LaunchFileEndsWhereAParameterIsRefused)
 {
-  if (kSanitized) GTEST_SKIP();
+  if (kSanitized) GTEST_SKIP() << "the nodelet manager of the system lacks the sanitizer's runtime";
   launch("sensor:=vlp16 frames:=-1");
   EXPECT_NE(read(printed_).find("'frames': expected a whole number from 0 to 100000, got -1"), std::string::npos);
   EXPECT_EQ(readReport(), "");

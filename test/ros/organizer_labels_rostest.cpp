@@ -141,7 +141,7 @@ TEST_F(LabelsFromImage, OneRowShortIsRefused)
 
 TEST_F(LabelsFromImage, OfColoursAreRefused)
 {
-  expectRefused([](sensor_msgs::Image& image) { image.encoding = encodings::BGR8; }, "32SC1, found 'bgr8'");
+  expectRefused([](sensor_msgs::Image& image) { image.encoding = encodings::BGR8; }, "64FC1, found 'bgr8'");
 }
 
 TEST_F(LabelsFromImage, WithLessDataThanTheyClaimAreRefused)

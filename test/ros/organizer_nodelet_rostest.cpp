@@ -1,3 +1,4 @@
+#include "damaged_cloud.h"
 #include "graph_fixture.h"
 #include "labelled_scene.h"
 
@@ -101,6 +102,34 @@ TEST_F(OrganizerGraph, BadCloudsAreDroppedWithTheirReasonAndTheNextOneIsTaken)
   ASSERT_TRUE(cloud);
   expectScene(*cloud);
   EXPECT_EQ(diagnostics.waitFor("scans processed", "1")["scans refused"], "2");
+}
+
+/// roscpp reads a message once for both.
+TEST_F(OrganizerGraph, DamagedCloudIsRefusedByEachOfTwoOrganizersOfOneTopic)
+{
+  const std::string second = newName();
+  ASSERT_TRUE(start());
+  ASSERT_TRUE(tryLoad(second, "OrganizerNodelet", {{second + "/input", name_ + "/input"}}));
+  DiagnosticsProbe of_first(name_), of_second(second);
+  const auto damaged = advertise<DamagedCloud>(name_ + "/input");
+  const auto whole = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
+  Probe<LabelledCloud> output(name_ + "/output"), second_output(second + "/output");
+  waitForSubscriber(damaged);
+  waitForSubscriber(whole);
+  const auto good = toRosMessage(laidOut(labelledScene(), kPlainLayout));
+  for (int i = 0; i < 5; ++i) damaged.publish(boost::make_shared<DamagedCloud>(DamagedCloud{*good}));
+  for (auto* diagnostics : {&of_first, &of_second})
+    EXPECT_NE(diagnostics->waitFor("scans refused", "5")["last error"].find("expected a whole sensor_msgs/PointCloud2"),
+              std::string::npos);
+  whole.publish(good);
+  for (auto* probe : {&output, &second_output})
+  {
+    const auto cloud = probe->next();
+    ASSERT_TRUE(cloud);
+    expectScene(*cloud);
+  }
+  for (auto* diagnostics : {&of_first, &of_second})
+    EXPECT_EQ(diagnostics->waitFor("scans processed", "1")["input"], "by pointer from " + ros::this_node::getName());
 }
 
 TEST_F(OrganizerGraph, RefusesToLoadWithAnOrientationThatDoesNotExist)

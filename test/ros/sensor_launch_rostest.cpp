@@ -89,6 +89,19 @@ TEST(SensorLaunch, NeedsNoLabels)
   EXPECT_GT(ground, 1000U);
   EXPECT_GT(things, 100U);
 }
+/// The nodelets log in this process, as in the driver's; the launch has a node of its own that says it.
+TEST(SensorLaunch, SaysItselfWhatIsWrong)
+{
+  LogProbe log;
+  auto output = std::make_unique<Probe<PanopticCloud>>("silent/output");
+  log.waitFor("/silent_organizer: no input: nobody publishes /silent_points", "/silent_echo");
+  const auto input = ros::NodeHandle().advertise<sensor_msgs::PointCloud2>("silent_points", 10);
+  waitForSubscriber(input);
+  input.publish(toRosMessage(withoutLabels(labelledScene())));
+  log.waitFor("/silent_organizer: scans refused: cloud on /silent_points dropped: ", "/silent_echo");
+  output.reset();
+  log.waitFor("/silent: nobody listens to /silent/output or /silent/markers", "/silent_echo");
+}
 }  // namespace
 }  // namespace lidar_panoptic_clustering
 

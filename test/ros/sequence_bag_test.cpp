@@ -69,7 +69,7 @@ protected:
   void expectNothingWritten() const
   {
     EXPECT_FALSE(fs::exists(config_.output));
-    EXPECT_FALSE(fs::exists(config_.output + ".part"));
+    for (const auto& entry : fs::recursive_directory_iterator(root_)) EXPECT_NE(entry.path().extension(), ".part");
   }
 
   SequenceBagConfig config_;
@@ -82,6 +82,16 @@ PointSet returnsIn(const CloudMessage& message)
   sensor_msgs::PointCloud2ConstIterator<std::uint32_t> label(message, "label");
   for (; at != at.end(); ++at, ++label) set.emplace(at[0], at[1], at[2], *label);
   return set;
+}
+
+TEST_F(SequenceBag, SequencesStayBelowTheirFolder)
+{
+  for (const std::string name : {"../sequences/07", "..", "", "/tmp"})
+  {
+    config_.sequence = name;
+    EXPECT_NE(errorOf().find("expected the name of one folder"), std::string::npos) << name;
+  }
+  expectNothingWritten();
 }
 
 TEST_F(SequenceBag, HoldsEveryPointWithItsRingAndClass)

@@ -24,7 +24,7 @@ std::string idText(std::uint32_t id);
 ///   upright, an ignored id for much of the ground; and from runs along a line: persons and two-wheelers many times
 ///   longer than any.
 ///
-/// Linear in the pixels, of which the shapes look at an eighth; allocates only where a new id comes. Not shared between
+/// Linear in the pixels, of which the shapes look at a quarter; allocates only where a new id comes. Not shared between
 /// threads.
 class LabelNumbering
 {
@@ -90,6 +90,11 @@ private:
   };
 
   static const std::vector<Candidate>& shippedCandidates();
+  static bool isReturn(const LabelledPoint& p)
+  {
+    const float zero = p.x * 0.0F + p.y * 0.0F + p.z * 0.0F;  // NaN where one of them is infinite or NaN
+    return zero == 0.0F && (p.x != 0.0F || p.y != 0.0F || p.z != 0.0F);
+  }
   Seen& seen(std::uint32_t id);
   void count(const LabelledCloud& image, const std::vector<std::uint32_t>& hidden);
   void lookAtShapes(const LabelledCloud& image);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/language.h"
+
 #include <pcl/pcl_macros.h>
 #include <pcl/point_cloud.h>
 #include <pcl/point_types.h>

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/language.h"
+
 namespace lidar_panoptic_clustering
 {
 /// Of the library in use, "0.1.0".

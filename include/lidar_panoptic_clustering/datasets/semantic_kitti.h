@@ -47,6 +47,8 @@ public:
   void readLabels(std::size_t scan, std::size_t point_count, std::vector<std::uint32_t>& labels) const;
   /// The same for the predictions given.
   void readPredictions(std::size_t scan, std::size_t point_count, std::vector<std::uint32_t>& labels) const;
+  /// The file that readPredictions() reads.
+  std::string predictionFile(std::size_t scan) const { return file(predictions_folder_, scan, ".label"); }
 
   /// The lidar's pose at each scan, in the lidar's frame at the sequence's first pose: Tr^-1 P Tr of the camera's poses
   /// P and the calibration Tr. Empty without poses.txt. A scan's number in its file name is its line there.
@@ -80,8 +82,8 @@ std::vector<std::string> listScanFiles(const std::string& folder, const std::str
 /// `root`/sequences/SS/predictions/NAME.label, where evaluation and leaderboard look for it.
 std::string predictionFile(const std::string& root, const std::string& sequence, const std::string& scan_name);
 
-/// Reads a label file of any length; throws std::runtime_error when it is missing or its size is no multiple of 4
-/// bytes.
+/// Reads a label file of any length; throws std::runtime_error when it is missing, its size is no multiple of 4 bytes,
+/// or it holds float32 numbers: read as uint32, all of these would be of class 0.
 void readLabelFile(const std::string& path, std::vector<std::uint32_t>& labels);
 
 /// Writes a label file, missing folders included: aside, then renamed, so that it is there whole or not at all. Throws

@@ -52,6 +52,9 @@ public:
   /// cloud of another size.
   void paint(const LabelledCloud& in, PanopticCloud& out);
 
+  /// The instances' colours (0xRRGGBB, by id - 1), as paint() uses them; valid until the next segment().
+  const std::vector<std::uint32_t>& colors();
+
   /// The class that the vote gives a point of instance `id` (1..n) and class `own`.
   ClassIndex votedClass(std::uint32_t id, ClassIndex own) const
   {
@@ -71,6 +74,7 @@ private:
   bool vote_;
   std::unique_ptr<Clusterer> clusterer_;
   InstanceColors colors_;
+  bool colored_ = false;  ///< the scan in hand has its colours
 
   ThingScan things_;
   std::vector<std::uint32_t> component_;

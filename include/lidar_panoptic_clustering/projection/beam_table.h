@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/language.h"
+
 #include <algorithm>
 #include <cmath>
 #include <cstdint>
@@ -30,7 +32,8 @@ public:
   float misfit(float sine, std::uint32_t beam) const
   {
     const float off = sine - sine_[beam];
-    const std::uint32_t other = off > 0.0F ? (beam > 0 ? beam - 1 : beam + 1) : (beam + 1 < rows() ? beam + 1 : beam - 1);
+    const std::uint32_t other =
+        off > 0.0F ? (beam > 0 ? beam - 1 : beam + 1) : (beam + 1 < rows() ? beam + 1 : beam - 1);
     return rows() > 1 ? std::min(1.0F, std::abs(off / (sine_[other] - sine_[beam]))) : 0.0F;
   }
 

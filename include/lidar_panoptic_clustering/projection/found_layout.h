@@ -23,14 +23,14 @@ struct FoundLayout
 {
   Layout layout = Layout::kOrganized;
   Orientation orientation = Orientation::kRowsAreRings;  ///< of organised clouds, after what `reshaped` says
-  bool reshaped = false;         ///< declared as rows x columns, the points laid as columns x rows
-  bool rings_are_rows = false;   ///< layout ring without a field for it: the verified rows of the cloud are the rings
+  bool reshaped = false;        ///< declared as rows x columns, the points laid as columns x rows
+  bool rings_are_rows = false;  ///< layout ring without a field for it: the verified rows of the cloud are the rings
   LineOrder line_order = LineOrder::kHighestFirst;
-  std::optional<Sweep> sweep;    ///< of points that come ring after ring
+  std::optional<Sweep> sweep;           ///< of points that come ring after ring
   std::uint32_t rows = 0, columns = 0;  ///< of the image; columns of an organised cloud may differ from scan to scan
-  std::string sensor;            ///< the parameter sensor; empty where none is named
-  std::string doubt;             ///< what a parameter sets that the points contradict; empty for none
-  std::uint32_t change = 0;      ///< grows by 1 whenever the description becomes another; 0 before the first cloud
+  std::string sensor;                   ///< the parameter sensor; empty where none is named
+  std::string doubt;                    ///< what a parameter sets that the points contradict; empty for none
+  std::uint32_t change = 0;  ///< grows by 1 whenever the description becomes another; 0 before the first cloud
 
   bool known() const { return change > 0; }
 };

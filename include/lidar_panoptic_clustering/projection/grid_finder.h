@@ -31,9 +31,9 @@ struct Grid
 class GridFinder
 {
 public:
-  /// The grid, of the cloud as declared and of its reshapedView(), that makes the best scan lines: not staggered where
-  /// there is such a one, and of those the one with the finest steps. Empty where nothing tells. Fields as accepted by
-  /// findScanFields().
+  /// The grid, of the cloud as declared and of its reshapedView(), that makes the best scan lines: along which the
+  /// azimuth changes more than the elevation, in the finest steps; of like ones the one that is not staggered. Empty
+  /// where nothing tells. Fields as accepted by findScanFields().
   std::optional<Grid> find(const RawCloud& raw, const ScanFields& fields);
 
   /// Looks at the cloud as declared, see probe().
@@ -45,8 +45,8 @@ public:
   /// Of what was looked at last.
   const LayoutProbe& probe() const { return probe_; }
 
-  /// Orders the scan lines of a grid by elevation. `points`: of the whole cloud by row-major index of the view, `width`:
-  /// of the view. Linear.
+  /// Orders the scan lines of a grid by elevation. `points`: of the whole cloud by row-major index of the view,
+  /// `width`: of the view. Linear.
   const RingOrder& orderLines(const std::vector<ScanPoint>& points, std::uint32_t width, Orientation orientation);
 
 private:

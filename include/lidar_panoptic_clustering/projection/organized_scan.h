@@ -38,8 +38,9 @@ void labelPoints(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of
 /// without a return get theirs too.
 ///
 /// A return that its pixel does not show gets the label of the nearest returns that are shown, in 3-D: what stands
-/// before it tells nothing of it. Looked for within two rows and two columns of its pixel, and a distance of 0.1 m or
-/// two columns' width; where nothing is so near, and where there is no return, it gets `no_class`. Linear.
+/// before it tells nothing of it. Looked for within two rows and two columns of its pixel, and a distance of two columns'
+/// width, at least 0.1 m and at most 0.2 m; where nothing is so near, and where there is no return, it gets `no_class`.
+/// Linear.
 /// Throws std::invalid_argument when there are not as many labels as pixels.
 void labelPixels(OrganizedScan& scan, const std::vector<std::uint32_t>& label_of_pixel, std::uint32_t no_class);
 }  // namespace lidar_panoptic_clustering

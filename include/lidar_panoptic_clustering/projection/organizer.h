@@ -17,9 +17,9 @@ namespace lidar_panoptic_clustering
 {
 /// "auto", and the layouts in their order: "organized", "ring", "beams", "unfold", "merged"
 ///
-/// "auto" takes clouds of several rows and columns for organised, in whichever of the four ways they make scan lines; by
-/// their field `ring` where they make none. A single row (or column) is placed by its field `ring` where that has two
-/// values and more, unfolded where its points come ring after ring, placed by the sensor's beams where a sensor is
+/// "auto" takes clouds of several rows and columns for organised, in whichever of the four ways they make scan lines;
+/// by their field `ring` where they make none. A single row (or column) is placed by its field `ring` where that has
+/// two values and more, unfolded where its points come ring after ring, placed by the sensor's beams where a sensor is
 /// named, and left as it is where it is a scan line of its own; any other is refused. "ring" on an organised cloud
 /// without such a field takes its scan lines for the rings, where they are such.
 const std::vector<std::string>& layoutNames();
@@ -56,13 +56,13 @@ struct OrganizerConfig
 /// elevation, neighbours in azimuth, hardly any returns hidden. A cloud that is not so is refused with what was found.
 ///
 /// What was found in one cloud holds for the stream, so that image and rows mean the same from scan to scan: number and
-/// sequence of rows, columns of clouds that are not organised. A scan that contradicts it is refused alone; ten in a row
-/// that do so change it. An organised cloud may at any time have another number of rows or columns. Scans with hardly
-/// any returns decide nothing and follow.
+/// sequence of rows, columns of clouds that are not organised. A scan that contradicts it is refused alone; ten in a
+/// row that do so change it. An organised cloud may at any time have another number of rows or columns. Scans with
+/// hardly any returns decide nothing and follow.
 ///
-/// Where no sensor is named, a cloud of one row with a field `ring` gets RowFinder::beamsOf() the highest ring seen, one
-/// ring after ring as many rows as rings came; the number grows within a stream and never shrinks. With a sensor it is
-/// its number of beams.
+/// Where no sensor is named, a cloud of one row with a field `ring` gets RowFinder::beamsOf() the highest ring seen,
+/// one ring after ring as many rows as rings came; the number grows within a stream and never shrinks. With a sensor it
+/// is its number of beams.
 ///
 /// What is no return (NaN, infinity, exactly (0, 0, 0)) gets NaN coordinates. Linear in points and pixels; allocates
 /// only while buffers grow. Not shared between threads.

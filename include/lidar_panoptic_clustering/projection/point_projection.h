@@ -72,9 +72,9 @@ public:
   /// in any order of points, and owns none.
   ///
   /// `directions`: one a point, rows below `rows`; `labels`: one a point, or empty for none (0); `class_bits`: the bits
-  /// of a label that are its class; `shift`: parts of a column, 0 to 1, by which all azimuths move to the right, so that
-  /// firings at the border of two columns fall into one of them. All but `rings` of `out` is filled. Linear in points
-  /// and pixels; allocates only while buffers grow.
+  /// of a label that are its class; `shift`: parts of a column, 0 to 1, by which all azimuths move to the right, so
+  /// that firings at the border of two columns fall into one of them. All but `rings` of `out` is filled. Linear in
+  /// points and pixels; allocates only while buffers grow.
   void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
                const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
                std::uint32_t class_bits, Projection& out, float shift = 0.0F);

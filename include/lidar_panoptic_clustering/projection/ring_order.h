@@ -11,9 +11,9 @@ namespace lidar_panoptic_clustering
 {
 /// Finds out by their elevations which row each ring of a scan is, however the rings are numbered.
 ///
-/// The elevation is the one in the cloud's frame, z over range; where the rings cannot be told apart by it, the one over
-/// the plane in which the rings lie best, so that a tilted frame does not blur them. Looks at one point in 13, so that
-/// firings of any usual number of lasers show all of them. Buffers are kept.
+/// The elevation is the one in the cloud's frame, z over range; where the rings cannot be told apart by it, the one
+/// over the plane in which the rings lie best, so that a tilted frame does not blur them. Looks at one point in 13, so
+/// that firings of any usual number of lasers show all of them. Buffers are kept.
 class RingOrder
 {
 public:
@@ -41,13 +41,13 @@ public:
   /// does so at all. False where there are too few returns to tell.
   bool tellsNothing() const;
 
-  double scatterRad() const { return scatter_; }         ///< standard deviation within a ring, mean over rings
+  double scatterRad() const { return scatter_; }          ///< standard deviation within a ring, mean over rings
   double rangeRad() const { return highest_ - lowest_; }  ///< from the lowest ring's mean to the highest's
 
 private:
   struct Ring
   {
-    Eigen::Vector3d sum = Eigen::Vector3d::Zero();               ///< of the directions
+    Eigen::Vector3d sum = Eigen::Vector3d::Zero();              ///< of the directions
     Eigen::Matrix3d sum_of_products = Eigen::Matrix3d::Zero();  ///< likewise
     std::uint32_t count = 0;
     double mean = 0.0, variance = 0.0;  ///< of the elevation's sine over axis_

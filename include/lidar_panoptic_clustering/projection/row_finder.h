@@ -52,8 +52,8 @@ public:
   /// Of the last scan.
   const RingOrder& order() const { return order_; }
 
-  /// Firings a turn by the usual gap of azimuth in the scan line of the last scan with most returns, which does not care
-  /// about sectors and missing returns; 0 where that line has hardly any.
+  /// Firings a turn by the usual gap of azimuth in the scan line of the last scan with most returns, which does not
+  /// care about sectors and missing returns; 0 where that line has hardly any.
   double firingsOfTurn();
 
   /// The columns that fit so many firings: the smallest power of two that has nine tenths of a column a firing, 16 to

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/language.h"
+
 #include <cstdint>
 
 /// Raw ids of SemanticKITTI (semantic-kitti-api, config/semantic-kitti.yaml) that occur in the simulated street.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/language.h"
+
 namespace lidar_panoptic_clustering::simulation
 {
 /// Where something upright stands in the world: x east, y north, z up [m], yaw from x to y [rad].

@@ -18,6 +18,9 @@ public:
   /// Returns the colours, by instance id - 1; valid until the next call.
   const std::vector<std::uint32_t>& follow(const Instances& instances);
 
+  /// What follow() returned last.
+  const std::vector<std::uint32_t>& colors() const { return colors_; }
+
   /// Forgets the scan before (a new sequence, a jump in time).
   void reset() { previous_.clear(); }
 

@@ -97,13 +97,21 @@ private:
     return base;
   }
 
+  /// Nothing where the ids are the class table's.
+  static std::string describeLabelTable(const std::string& name)
+  {
+    if (name.empty()) return "";
+    return "\nlabel table: " + printable(name, false) + ", content " + fingerprintOf(ClassTable::load(name));
+  }
+
   /// All that decides the predictions but the scans themselves, defaults included.
   static std::string describe(const BenchmarkSettings& settings, const RowSettings& row, const ClassTable& table)
   {
     std::string text =
         "semantics: " + printable(settings.semantics.empty() ? "ground truth" : settings.semantics, false) +
         "\nclass table: " + printable(settings.class_table, false) + ", content " + fingerprintOf(table) +
-        "\ncolumns: " + std::to_string(settings.columns) + "\nalgorithm: " + row.algorithm + "\n";
+        describeLabelTable(settings.label_table) + "\ncolumns: " + std::to_string(settings.columns) +
+        "\nalgorithm: " + row.algorithm + "\n";
     const ParameterMap parameters = row.allParameters();
     for (const ParameterInfo& info : algorithmParameters(row.algorithm))
     {

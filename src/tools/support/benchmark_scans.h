@@ -1,12 +1,13 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/datasets/predicted_classes.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
 #include "tools/support/benchmark_settings.h"
-#include "tools/support/known_classes.h"
 
 #include <algorithm>
+#include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <stdexcept>
@@ -32,6 +33,7 @@ public:
   BenchmarkScans(const BenchmarkSettings& settings, std::shared_ptr<const ClassTable> table)
       : dataset_(settings.dataset),
         semantics_(settings.semantics),
+        label_table_(settings.label_table),
         table_(std::move(table)),
         keep_going_(settings.keep_going)
   {
@@ -72,8 +74,7 @@ public:
       scan.classes = scan.truth;
       return;
     }
-    sequence.readPredictions(number, scan.points.size(), scan.classes);
-    requireKnownClasses(scan.classes, *table_, predictionFile(semantics_, sequence.name(), scanName(i)));
+    predicted_[places_[i].sequence].read(sequence, number, scan.points.size(), scan.classes);
   }
 
 private:
@@ -100,7 +101,13 @@ private:
     if (semantics_.empty() && !sequence.hasLabels())
       throw std::runtime_error("sequence " + name + " of " + dataset_ +
                                " has no folder 'labels' to take the classes from; give --semantics");
-    if (!semantics_.empty()) requireScans(sequence);
+    if (!semantics_.empty())
+    {
+      requireScans(sequence);
+      predicted_.emplace_back(sequence, table_, label_table_);
+      if (!predicted_.back().doubt().empty())
+        std::fprintf(stderr, "sequence %s: %s\n", name.c_str(), predicted_.back().doubt().c_str());
+    }
     const std::size_t count = limit == 0 ? sequence.size() : std::min(sequence.size(), static_cast<std::size_t>(limit));
     for (std::size_t i = 0; i < count; ++i) places_.push_back({sequences_.size(), i});
     sequences_.push_back(std::move(sequence));
@@ -128,10 +135,11 @@ private:
 
   const SemanticKittiSequence& sequenceOf(std::size_t i) const { return sequences_[places_[i].sequence]; }
 
-  std::string dataset_, semantics_;
+  std::string dataset_, semantics_, label_table_;
   std::shared_ptr<const ClassTable> table_;
   bool keep_going_;
   std::vector<SemanticKittiSequence> sequences_;
+  std::vector<PredictedClasses> predicted_;  ///< by sequence, where there are predictions
   std::vector<Place> places_;
   std::vector<SkippedScan> skipped_;
 };

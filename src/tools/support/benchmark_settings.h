@@ -37,6 +37,7 @@ struct BenchmarkSettings
   std::vector<std::string> sequences;  ///< "00", ..; none: all of the data set that have ground truth
   std::string semantics;               ///< folder of predicted classes; empty: the true ones
   std::string class_table = "semantic_kitti";
+  std::string label_table;  ///< of the predicted classes; empty: the class table
   std::vector<RowSettings> rows;
   std::string output;  ///< folder of the predictions; empty: none are written
   int jobs = 1;
@@ -47,14 +48,14 @@ struct BenchmarkSettings
 };
 
 /// `--set algorithm.parameter=value,value`
-struct Sweep
+struct ParameterSweep
 {
   std::string algorithm, parameter;
   std::vector<std::string> values;
 };
 
 /// Throws std::invalid_argument when the text is not of that form.
-inline Sweep parseSweep(const std::string& text)
+inline ParameterSweep parseSweep(const std::string& text)
 {
   const std::size_t dot = text.find('.'), equals = text.find('=');
   if (dot == std::string::npos || equals == std::string::npos || dot == 0 || equals < dot + 2)
@@ -77,7 +78,7 @@ inline std::vector<RowSettings> allRows()
 }
 
 /// Makes of each row of the algorithm one a value.
-inline std::vector<RowSettings> applySweep(const std::vector<RowSettings>& rows, const Sweep& sweep)
+inline std::vector<RowSettings> applySweep(const std::vector<RowSettings>& rows, const ParameterSweep& sweep)
 {
   std::vector<RowSettings> result;
   bool found = false;

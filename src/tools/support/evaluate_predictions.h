@@ -1,9 +1,9 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/class_table.h"
+#include "lidar_panoptic_clustering/datasets/predicted_classes.h"
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 #include "lidar_panoptic_clustering/evaluation/evaluation_report.h"
-#include "tools/support/known_classes.h"
 #include "tools/support/progress.h"
 #include "tools/support/run_threads.h"
 

@@ -85,7 +85,7 @@ private:
   void choose(const std::vector<ScanPoint>& points)
   {
     chosen_.clear();
-    if (without_.keep_rings > 1) unfoldScan(points, directions_);
+    if (without_.keep_rings > 1) unfoldScan(points, Sweep(), directions_);
     for (std::uint32_t i = 0; i < points.size(); ++i)
       if (without_.keep_rings == 1 || directions_[i].row % static_cast<std::uint32_t>(without_.keep_rings) == 0)
         chosen_.push_back(i);
