@@ -60,11 +60,11 @@ ComponentJudge::Bargain ComponentJudge::bargainOf(StructureBias bias)
   switch (bias)
   {
     case StructureBias::kStrict:
-      return {0.33F, 1.3F, 0.5F, 0.4F, 0.6F};
+      return {0.33F, 1.3F, 0.6F, 0.4F, 0.6F, 0.25F};
     case StructureBias::kBalanced:
-      return {0.38F, 0.8F, 0.5F, 0.2F, 0.5F};
+      return {0.42F, 0.5F, 0.5F, 0.15F, 0.5F, 0.15F};
     case StructureBias::kKeepObjects:
-      return {0.5F, 0.5F, 0.35F, 0.15F, 0.4F};
+      return {0.5F, 0.3F, 0.35F, 0.1F, 0.4F, 0.0F};
   }
   throw std::invalid_argument("structure: expected one of its values");
 }
@@ -75,7 +75,7 @@ bool ComponentJudge::isStructure(const ScanComponent& c) const
   if (c.top > limits_.height || c.bottom > kHovering) return true;
   if (!c.footprint.fits(limits_.length, kWidest)) return true;
   const Appearance appearance(c);
-  return isPole(c, appearance) || isFoliage(appearance) || isWall(c, appearance);
+  return isPole(c, appearance) || isFoliage(appearance) || isWall(c, appearance) || isBehind(c, appearance);
 }
 
 bool ComponentJudge::isPole(const ScanComponent& c, const Appearance& a)
@@ -83,7 +83,7 @@ bool ComponentJudge::isPole(const ScanComponent& c, const Appearance& a)
   if (a.maybe_tall && a.size.length < 1.0F && (a.tall || c.bottom > 0.5F)) return true;
   // thinner than a person, from the side too: bollards, posts, small trunks; posts of signs are 0.06 to 0.1 m thick
   const bool stands = c.bottom < 0.5F && c.top > 1.0F && c.blocked + c.undercut > 0;
-  if (stands && a.size.length < 0.25F) return true;
+  if (stands && a.size.length < 0.2F) return true;
   return c.top > 1.5F && (a.size.length < 0.18F || (a.size.length < 0.6F && a.size.width < 0.1F));
 }
 
@@ -106,6 +106,11 @@ bool ComponentJudge::isWall(const ScanComponent& c, const Appearance& a) const
   return !a.maybe_tall && a.size.length > 6.0F && a.size.width < 0.3F;
 }
 
+bool ComponentJudge::isBehind(const ScanComponent& c, const Appearance& a) const
+{
+  return !a.has_feet && static_cast<float>(c.free_ends) < bargain_.least_in_front * static_cast<float>(c.ends);
+}
+
 bool ComponentJudge::isVehicle(const ScanComponent& c) const
 {
   constexpr float kSmooth = 0.32F;  // sheet metal with windows
@@ -121,7 +126,7 @@ bool ComponentJudge::isPerson(const ScanComponent& c) const
   if (c.point_count < kFewest || c.open_top) return false;
   if (c.top < 1.2F || c.top > 2.1F || c.top - c.bottom < 0.5F || c.bottom > 1.1F) return false;  // sitting to tall
   const RectangleSize size = c.footprint.smallestRectangle();
-  if (size.length < 0.3F || size.length > 1.1F || size.width < 0.15F || size.width > 0.9F) return false;
+  if (size.length < 0.3F || size.length > 1.1F || size.width < 0.05F || size.width > 0.9F) return false;
   if (share(c.free_ends, c.ends) < bargain_.least_free) return false;
   return c.triples < kFewestTriples || share(c.rough_triples, c.triples) < kMostRough;
 }

@@ -60,8 +60,7 @@ void GroundLabeler::judge()
   const auto& parts = components_.parts();
   const auto& components = components_.list();
   label_of_component_.clear();
-  for (const ScanComponent& c : components)
-    label_of_component_.push_back(judge_.isStructure(c) ? structure_ : object_);
+  for (const ScanComponent& c : components) label_of_component_.push_back(judge_.isStructure(c) ? structure_ : object_);
   label_of_part_.assign(parts.size(), ignored_);
   for (std::uint32_t part = 0; part < parts.size(); ++part)
   {
@@ -72,7 +71,8 @@ void GroundLabeler::judge()
     if (!is_most && !judge_.isVehicle(components[component])) label_of_component_[component] = structure_;
   }
   for (std::uint32_t part = 0; part < parts.size(); ++part)
-    if (label_of_part_[part] == ignored_) label_of_part_[part] = label_of_component_[components_.componentOfPart()[part]];
+    if (label_of_part_[part] == ignored_)
+      label_of_part_[part] = label_of_component_[components_.componentOfPart()[part]];
 }
 
 void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels)

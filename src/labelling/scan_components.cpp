@@ -201,9 +201,9 @@ void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<G
 /// Along the scan lines: how rough a surface is, and whether it goes on where a part ends.
 void ScanComponents::examineLines(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
-  constexpr float kNoise = 0.04F;   // [m] twice the range noise of usual sensors
-  constexpr float kBend = 0.75F;    // of the distance between neighbouring beams
-  constexpr float kBehind = 0.3F;   // [m]
+  constexpr float kNoise = 0.04F;     // [m] twice the range noise of usual sensors
+  constexpr float kBend = 0.75F;      // of the distance between neighbouring beams
+  constexpr float kBehind = 0.3F;     // [m]
   constexpr std::uint32_t kNext = 3;  // columns in which what comes next is looked for
   const auto examineEnd = [&](std::uint32_t pixel, std::int32_t direction)
   {

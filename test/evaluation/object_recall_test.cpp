@@ -76,8 +76,8 @@ TEST(ObjectRecall, TheClassDoesNotMatterAndTheThresholdsAreStrict)
   // IoU 0.5 is not above it, 6/10 is, 7/10 is not above 0.7, 8/10 is
   for (const auto& [inside, iou_50, iou_70] : {std::tuple{5U, 0U, 0U}, {6U, 1U, 0U}, {7U, 1U, 0U}, {8U, 1U, 1U}})
   {
-    const ObjectRecall recall =
-        recallOf({{inside, kPerson, 1, kObject, 9}, {10 - inside, kPerson, 1, kStructure, 0}, {5, kRoad, 0, kGround, 0}});
+    const ObjectRecall recall = recallOf(
+        {{inside, kPerson, 1, kObject, 9}, {10 - inside, kPerson, 1, kStructure, 0}, {5, kRoad, 0, kGround, 0}});
     EXPECT_EQ(recall.all().objects, 1U);
     EXPECT_EQ(recall.all().iou_50, iou_50) << inside;
     EXPECT_EQ(recall.all().iou_70, iou_70) << inside;
@@ -128,7 +128,8 @@ TEST(ObjectRecall, GroundLeavesOutWhatTheTruthDoesNotTell)
 
 TEST(ObjectRecall, ClassesAndRanges)
 {
-  const ObjectRecall recall = recallOf({{5, kCar, 1, 3, 1, 9.9F}, {5, kCar, 2, 2, 0, 10.0F}, {5, kPerson, 3, 3, 2, 60.0F}});
+  const ObjectRecall recall =
+      recallOf({{5, kCar, 1, 3, 1, 9.9F}, {5, kCar, 2, 2, 0, 10.0F}, {5, kPerson, 3, 3, 2, 60.0F}});
   EXPECT_EQ(recall.byClass().at("car").objects, 2U);
   EXPECT_EQ(recall.byClass().at("car").lost, 1U);
   EXPECT_EQ(recall.byClass().at("person").iou_70, 1U);

@@ -1,7 +1,7 @@
 #include "lidar_panoptic_clustering/labelling/ground_labeler.h"
 
-#include "lidar_panoptic_clustering/core/class_table.h"
 #include "labelled_scene.h"
+#include "lidar_panoptic_clustering/core/class_table.h"
 
 #include <gtest/gtest.h>
 

@@ -95,8 +95,8 @@ inline LabelledCloud castScene(const RayScene& scene, const RaySensor& sensor, s
 inline LabelledCloud castScene(const RayScene& scene, const SensorModel& sensor, float sector_deg,
                                std::vector<int>& hits)
 {
-  const std::uint32_t skipped =
-      static_cast<std::uint32_t>(static_cast<float>(sensor.columns) * 0.5F * std::max(0.0F, 1.0F - sector_deg / 360.0F));
+  const std::uint32_t skipped = static_cast<std::uint32_t>(static_cast<float>(sensor.columns) * 0.5F *
+                                                           std::max(0.0F, 1.0F - sector_deg / 360.0F));
   const std::uint32_t columns = sensor.columns - 2 * skipped;
   LabelledCloud cloud = emptyCloud(sensor.rows(), columns);
   hits.assign(cloud.size(), kMissed);

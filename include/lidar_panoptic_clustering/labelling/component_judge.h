@@ -32,7 +32,9 @@ StructureBias structureBiasFromName(const std::string& name);
 ///   before it gets there tells nothing, so that a car is not judged by beams that never came near its sill, which are
 ///   most where beams are far apart. A vehicle's own wheels block a quarter of its length, so half is asked for, and
 ///   less where the outline is a car's;
-/// - the upper part of something tall whose foot is hidden, and too narrow for a van.
+/// - the upper part of something tall whose foot is hidden, and too narrow for a van;
+/// - seen through gaps of what is nearer: no foot, and hardly an end beyond which the beams go farther, as at the wall
+///   behind a hedge. What stands in a street has the street behind it on one side at least.
 ///
 /// In a structure a part is a person that has a person's size and height, is not rough, and stands free on both sides:
 /// beyond its outline the beams go farther. The same makes a structure of what is around a person and has nothing of a
@@ -63,11 +65,13 @@ private:
     float hidden_foot_width;  ///< [m] of what is tall and shows no foot: from there on it may be a van
     float undercut, cars;     ///< least shares of undercut feet, in general and with a car's outline
     float least_free;         ///< share of a person's outline
+    float least_in_front;     ///< the same of what shows no foot
   };
   static Bargain bargainOf(StructureBias bias);
   static bool isPole(const ScanComponent& c, const Appearance& a);
   bool isFoliage(const Appearance& a) const;
   bool isWall(const ScanComponent& c, const Appearance& a) const;
+  bool isBehind(const ScanComponent& c, const Appearance& a) const;
 
   Limits limits_;
   Bargain bargain_;

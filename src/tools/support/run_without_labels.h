@@ -109,8 +109,8 @@ private:
       const double begin = cpuTime();
       row.chain->process(viewOf(points_));
       if (i > 0) row.cpu_ms.push_back(cpuTime() - begin);
-      row.recall.addScan({row.chain->labels().data(), row.chain->instanceIds().data(), ScanLabels::packed(truth_.data()),
-                          range_.data(), points_.size()});
+      row.recall.addScan({row.chain->labels().data(), row.chain->instanceIds().data(),
+                          ScanLabels::packed(truth_.data()), range_.data(), points_.size()});
       if (!settings_.output.empty()) save(row, i);
     }
   }
