@@ -23,7 +23,7 @@ std::shared_ptr<const ClassTable> kitti()
 }
 
 /// `points` points of one true label and one result.
-struct Run
+struct Piece
 {
   std::uint32_t points, true_class, true_instance, found_class, found_instance;
   float range = 5.0F;
@@ -31,9 +31,9 @@ struct Run
 
 struct Scan
 {
-  explicit Scan(const std::vector<Run>& runs)
+  explicit Scan(const std::vector<Piece>& runs)
   {
-    for (const Run& run : runs)
+    for (const Piece& run : runs)
       for (std::uint32_t k = 0; k < run.points; ++k)
       {
         truth.push_back(run.true_instance << 16U | run.true_class);
@@ -49,7 +49,7 @@ struct Scan
   std::vector<float> range;
 };
 
-ObjectRecall recallOf(const std::vector<Run>& runs, std::uint32_t min_points = 1)
+ObjectRecall recallOf(const std::vector<Piece>& runs, std::uint32_t min_points = 1)
 {
   ObjectRecallConfig config;
   config.min_points = min_points;
@@ -58,7 +58,7 @@ ObjectRecall recallOf(const std::vector<Run>& runs, std::uint32_t min_points = 1
   return recall;
 }
 
-RecallOutcome outcomeOf(const std::vector<Run>& runs)
+RecallOutcome outcomeOf(const std::vector<Piece>& runs)
 {
   return recallOf(runs).objects().at(0).outcome;
 }
@@ -198,7 +198,7 @@ TEST(ObjectRecall, EqualsBruteForceOnRandomScansAndAddsUp)
   BruteForce brute;
   for (int round = 0; round < 60; ++round)
   {
-    std::vector<Run> runs;
+    std::vector<Piece> runs;
     for (int k = 0; k < 40; ++k)
     {
       const std::uint32_t classes[] = {kCar, kPerson, kRoad, kBuilding, 0, kVegetation};
