@@ -87,7 +87,7 @@ bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float
 void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns)
 {
   const float max_squared_range = max_range_m * max_range_m;
-  lowest_.assign(kCells, {kFar, 0});
+  lowest_.assign(kCells, {kFar, 0, -kFar});
   cell_of_.resize(cloud.points.size());
   returns.resize(cloud.points.size());
   std::uint32_t open = 0;  // neighbours share a cell: it is kept at hand until the next one
@@ -113,6 +113,7 @@ void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m,
     }
     const bool lower = p.z < low.z;  // without a branch: no predictor knows which return is lower
     low.z = lower ? p.z : low.z;
+    low.top = std::max(low.top, p.z);
     low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
   }
   lowest_[open] = low;
@@ -198,6 +199,8 @@ void GroundSurface::follow(const LabelledCloud& cloud, float max_slope)
 {
   constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
   constexpr float kMostStep = 0.5F;  // [m] below a bumper
+  // [m] what rises by more within a cell is a face of something, whose lower edge may hang over the ground by a sill
+  constexpr float kFace = 0.3F, kFaceStep = 0.15F;
   for (std::uint32_t sector = 0; sector < kSectors; ++sector)
   {
     const std::uint32_t cell = sector * kBins;
@@ -222,7 +225,8 @@ void GroundSurface::follow(const LabelledCloud& cloud, float max_slope)
       const std::uint32_t cell = sector * kBins + bin;
       const LabelledPoint& low = cloud.points[lowest_[cell].point];
       const float found = plane_.heightOf(low.x, low.y, low.z);
-      const float gate = std::min(kMostStep, kNoise + max_slope * (unseen + step));
+      const bool is_face = lowest_[cell].top - lowest_[cell].z > kFace;
+      const float gate = std::min(is_face ? kFaceStep : kMostStep, kNoise + max_slope * (unseen + step));
       const bool seen = lowest_[cell].z != kFar && std::abs(found - expected) < gate;
       ground_[cell] = seen ? found : expected;
       distance_[cell] = seen ? std::hypot(low.x, low.y) : kGrid.middle[bin];
@@ -254,6 +258,14 @@ void GroundSurface::flatten()
   std::fill(ground_.begin(), ground_.end(), 0.0F);
   for (std::uint32_t cell = 0; cell < kCells; ++cell)
     distance_[cell] = cell % kBins == 0 ? 0.0F : kGrid.middle[cell % kBins];
+}
+
+float GroundSurface::heightOf(float x, float y, float z) const
+{
+  const float range = std::sqrt(x * x + y * y);
+  std::uint32_t inner = sectorOf(x, y) * kBins + kGrid.find(range);
+  inner -= range < distance_[inner] ? 1 : 0;
+  return plane_.heightOf(x, y, z) - ground_[inner] - rise_[inner] * (range - distance_[inner]);
 }
 
 /// On the line between the grounds of two cells; beyond the last one as there.

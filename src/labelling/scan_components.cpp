@@ -1,6 +1,5 @@
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 
-#include <algorithm>
 #include <cmath>
 #include <utility>
 
@@ -10,13 +9,22 @@ namespace
 {
 constexpr std::uint32_t kColumnReach = 8, kRowReach = 4;
 
-bool hangTogether(const LabelledPoint& a, const LabelledPoint& b, float squared_link)
+/// How closely two returns hang together.
+enum class Tie
+{
+  kNone,
+  kLoose,  ///< within the link
+  kTight   ///< within the step, or on one surface
+};
+
+Tie tieOf(const LabelledPoint& a, const LabelledPoint& b, float squared_step, float squared_link)
 {
   const auto pa = a.getVector3fMap(), pb = b.getVector3fMap();
   const float squared = (pa - pb).squaredNorm();
-  if (squared < squared_link) return true;
+  if (squared < squared_step) return Tie::kTight;
   constexpr float kSlant = 4.0F;  // the squared cosine of 60 degrees, inverted; |a x b| / |a| is across the beam
-  return squared * pa.squaredNorm() < kSlant * pa.cross(pb).squaredNorm();
+  if (squared * pa.squaredNorm() < kSlant * pa.cross(pb).squaredNorm()) return Tie::kTight;
+  return squared < squared_link ? Tie::kLoose : Tie::kNone;
 }
 
 /// Whether elevation falls with the row; told by a few thousand returns.
@@ -33,73 +41,114 @@ bool isHighestFirst(const LabelledCloud& cloud, const std::vector<GroundedReturn
 }
 }  // namespace
 
-void ScanComponents::find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
-                          float link_distance, bool full_turn)
+void ScanComponent::add(const ScanComponent& other)
 {
-  link(cloud, returns, above, link_distance, full_turn);
-  gather(cloud, returns);
+  point_count += other.point_count;
+  bottom = std::min(bottom, other.bottom), top = std::max(top, other.top);
+  footprint.add(other.footprint);
+  open_top |= other.open_top;
+  blocked += other.blocked, undercut += other.undercut;
+  triples += other.triples, rough_triples += other.rough_triples;
+  ends += other.ends, free_ends += other.free_ends;
+}
+
+void ScanComponents::find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                          const Distances& distances, bool full_turn)
+{
+  link(cloud, returns, distances, full_turn);
+  gatherParts(cloud, returns);
+  joinParts();
   const bool highest_first = isHighestFirst(cloud, returns);
   examineTops(cloud, returns, highest_first);
-  examineFeet(cloud, returns, highest_first);
-  examineSurfaces(cloud, returns);
+  examineFeet(cloud, returns, distances.above, highest_first);
+  examineLines(cloud, returns);
+  components_.assign(component_count_, {});
+  for (std::uint32_t part = 0; part < parts_.size(); ++part) components_[component_of_part_[part]].add(parts_[part]);
 }
 
 /// Runs of neighbours along a line are one from the start; each pair of runs, one below the other, is tried until it
-/// hangs together. `component_of_` holds a run's first pixel until gather().
-void ScanComponents::link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
-                          float link_distance, bool full_turn)
+/// hangs together. `part_of_` holds a run's first pixel until gatherParts().
+void ScanComponents::link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                          const Distances& distances, bool full_turn)
 {
   const std::uint32_t columns = cloud.width;
-  const float squared_link = link_distance * link_distance;
+  const float squared_step = distances.step * distances.step, squared_link = distances.link * distances.link;
   sets_.reset(returns.size());
-  component_of_.assign(returns.size(), kNone);
+  part_of_.assign(returns.size(), kNone);
   pixels_.clear();
+  loose_.clear();
   row_before_.assign(columns, kNone);
-  const auto isPair = [&](std::uint32_t a, std::uint32_t b)
-  { return hangTogether(cloud.points[a], cloud.points[b], squared_link); };
+  const auto tie = [&](std::uint32_t a, std::uint32_t b)
+  { return tieOf(cloud.points[a], cloud.points[b], squared_step, squared_link); };
   for (std::uint32_t row = 0; row < cloud.height; ++row)
   {
     const std::uint32_t begin = row * columns;
-    std::uint32_t first = kNone, last = kNone, run = kNone, run_above = kNone;
+    std::uint32_t first = kNone, last = kNone, run = kNone, run_above = kNone, loose_above = kNone;
     for (std::uint32_t pixel = begin; pixel < begin + columns; ++pixel)
     {
-      if (!(returns[pixel].height >= above)) continue;  // false for no return
+      if (!(returns[pixel].height >= distances.above)) continue;  // false for no return
       pixels_.push_back(pixel);
       if (first == kNone) first = pixel;
-      if (last == kNone || pixel - last > kColumnReach || !isPair(pixel, last)) run = pixel, run_above = kNone;
+      const Tie beside = last == kNone || pixel - last > kColumnReach ? Tie::kNone : tie(pixel, last);
+      if (beside == Tie::kLoose) loose_.push_back({pixel, last});
+      if (beside != Tie::kTight) run = pixel, run_above = loose_above = kNone;
       last = pixel;
-      component_of_[pixel] = run;
+      part_of_[pixel] = run;
 
       const std::uint32_t before = std::exchange(row_before_[pixel - begin], row);
       if (before == kNone || row - before > kRowReach) continue;
-      const std::uint32_t over = before * columns + pixel - begin;
-      if (component_of_[over] == run_above || !isPair(pixel, over)) continue;
-      run_above = component_of_[over];
-      sets_.unite(run, run_above);
+      const std::uint32_t over = before * columns + pixel - begin, over_run = part_of_[over];
+      if (over_run == run_above) continue;
+      const Tie above = tie(pixel, over);
+      if (above == Tie::kTight)
+      {
+        run_above = over_run;
+        sets_.unite(run, run_above);
+      }
+      else if (above == Tie::kLoose && over_run != loose_above)
+      {
+        loose_above = over_run;
+        loose_.push_back({pixel, over});
+      }
     }
-    if (full_turn && first != last && first + columns - last <= kColumnReach && isPair(first, last))
-      sets_.unite(first, run);
+    if (!full_turn || first == last || first + columns - last > kColumnReach) continue;
+    const Tie around = tie(first, last);
+    if (around == Tie::kTight) sets_.unite(first, run);
+    if (around == Tie::kLoose) loose_.push_back({first, last});
   }
 }
 
-/// Numbers the components and measures their size.
-void ScanComponents::gather(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
+/// Numbers the parts and measures their size.
+void ScanComponents::gatherParts(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
-  components_.clear();
+  parts_.clear();
   for (const std::uint32_t pixel : pixels_)
   {
-    const std::uint32_t root = sets_.find(component_of_[pixel]);
-    if (root == pixel)  // the smallest member: the component's first
+    const std::uint32_t root = sets_.find(part_of_[pixel]);
+    if (root == pixel)  // the smallest member: the part's first
     {
-      component_of_[pixel] = static_cast<std::uint32_t>(components_.size());
-      components_.emplace_back();
-      components_.back().bottom = components_.back().top = returns[pixel].height;
+      part_of_[pixel] = static_cast<std::uint32_t>(parts_.size());
+      parts_.emplace_back();
     }
-    component_of_[pixel] = component_of_[root];
-    ScanComponent& c = components_[component_of_[pixel]];
+    part_of_[pixel] = part_of_[root];
+    ScanComponent& c = parts_[part_of_[pixel]];
     ++c.point_count;
     c.bottom = std::min(c.bottom, returns[pixel].height), c.top = std::max(c.top, returns[pixel].height);
     c.footprint.add(cloud.points[pixel].x, cloud.points[pixel].y);
+  }
+}
+
+/// Numbers the components.
+void ScanComponents::joinParts()
+{
+  sets_.reset(parts_.size());
+  for (const Pair& pair : loose_) sets_.unite(part_of_[pair.a], part_of_[pair.b]);
+  component_count_ = 0;
+  component_of_part_.resize(parts_.size());
+  for (std::uint32_t part = 0; part < parts_.size(); ++part)
+  {
+    const std::uint32_t root = sets_.find(part);  // the smallest member
+    component_of_part_[part] = root == part ? component_count_++ : component_of_part_[root];
   }
 }
 
@@ -113,15 +162,17 @@ void ScanComponents::examineTops(const LabelledCloud& cloud, const std::vector<G
     {
       const std::uint32_t pixel = (highest_first ? k : cloud.height - 1 - k) * columns + column;
       if (!returns[pixel].isReturn()) continue;
-      if (component_of_[pixel] != kNone) components_[component_of_[pixel]].open_top = true;
+      if (part_of_[pixel] != kNone) parts_[part_of_[pixel]].open_top = true;
       break;  // what lies below the highest return of a column ends there
     }
 }
 
-void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
                                  bool highest_first)
 {
   constexpr float kUnder = 0.15F;  // [m] more than a wall's foot and range noise
+  // [m] above the ground at the foot: from the noise of ground and ranges on; what is undercut is seen to be so
+  constexpr float kFoot = 0.05F;
   const std::uint32_t columns = cloud.width;
   row_before_.assign(columns, kNone);  // the row of the last return
   for (std::uint32_t k = 0; k < cloud.height; ++k)
@@ -132,30 +183,56 @@ void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<G
       const std::uint32_t pixel = row * columns + column;
       if (!returns[pixel].isReturn()) continue;
       const std::uint32_t before = std::exchange(row_before_[column], row);
-      if (component_of_[pixel] != kNone || before == kNone) continue;
+      if (part_of_[pixel] != kNone || before == kNone) continue;
       const std::uint32_t over = before * columns + column;
-      if (component_of_[over] == kNone || (row > before ? row - before : before - row) > kRowReach) continue;
-      ScanComponent& c = components_[component_of_[over]];
-      ++c.feet;
-      if (returns[pixel].range > returns[over].range + kUnder) ++c.undercut_feet;
+      if (part_of_[over] == kNone || (row > before ? row - before : before - row) > kRowReach) continue;
+      ScanComponent& c = parts_[part_of_[over]];
+      const bool is_first = returns[over].height >= above;  // not a foot itself
+      const float beyond = returns[pixel].range - returns[over].range;
+      const bool is_foot = std::abs(beyond) <= kUnder && returns[pixel].height > kFoot;
+      if (is_foot) part_of_[pixel] = part_of_[over];
+      if (!is_first) continue;
+      c.undercut += beyond > kUnder ? 1U : 0U;
+      c.blocked += is_foot ? 1U : 0U;
     }
   }
 }
 
-void ScanComponents::examineSurfaces(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
+/// Along the scan lines: how rough a surface is, and whether it goes on where a part ends.
+void ScanComponents::examineLines(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
-  constexpr float kNoise = 0.04F;  // [m] twice the range noise of usual sensors
-  constexpr float kBend = 0.75F;   // of the distance between neighbouring beams
+  constexpr float kNoise = 0.04F;     // [m] twice the range noise of usual sensors
+  constexpr float kBend = 0.75F;      // of the distance between neighbouring beams
+  constexpr float kBehind = 0.3F;     // [m]
+  constexpr std::uint32_t kNext = 3;  // columns in which what comes next is looked for
+  const auto examineEnd = [&](std::uint32_t pixel, std::int32_t direction)
+  {
+    ScanComponent& c = parts_[part_of_[pixel]];
+    ++c.ends;
+    const auto column = static_cast<std::int32_t>(pixel % cloud.width);
+    for (std::uint32_t k = 1; k <= kNext; ++k)
+    {
+      const std::int32_t next = column + direction * static_cast<std::int32_t>(k);
+      if (next < 0 || next >= static_cast<std::int32_t>(cloud.width)) break;
+      const GroundedReturn& other = returns[pixel - static_cast<std::uint32_t>(column - next)];
+      if (!other.isReturn()) continue;
+      c.free_ends += other.range > returns[pixel].range + kBehind ? 1U : 0U;
+      return;
+    }
+    ++c.free_ends;
+  };
   for (const std::uint32_t pixel : pixels_)
   {
-    const std::uint32_t component = component_of_[pixel];
-    if (pixel % cloud.width < 2 || component_of_[pixel - 1] != component || component_of_[pixel - 2] != component)
-      continue;
+    const std::uint32_t part = part_of_[pixel], column = pixel % cloud.width;
+    if (column == 0 || part_of_[pixel - 1] != part) examineEnd(pixel, -1);
+    if (column + 1 == cloud.width || part_of_[pixel + 1] != part) examineEnd(pixel, 1);
+    const std::uint32_t component = component_of_part_[part];
+    if (column < 2 || of(pixel - 1) != component || of(pixel - 2) != component) continue;
     const LabelledPoint &a = cloud.points[pixel - 1], &b = cloud.points[pixel];
     const float range = returns[pixel].range;
     const float spacing = std::abs(a.x * b.y - a.y * b.x);  // times range
     const float bend = range - 2.0F * returns[pixel - 1].range + returns[pixel - 2].range;
-    ScanComponent& c = components_[component];
+    ScanComponent& c = parts_[part];
     ++c.triples;
     c.rough_triples += (std::abs(bend) - kNoise) * range > kBend * spacing ? 1U : 0U;
   }

@@ -69,15 +69,14 @@ void ScanLabeller::takeCloud(const RawCloud& labels, const std::string& label_fi
 void ScanLabeller::takeGeometry(OrganizedScan& scan, bool all)
 {
   if (scan.layout == Layout::kMerged)
-    throw std::invalid_argument(
-        "expected scan lines, as labels is 'none', found points without: layout 'merged', of a lidar "
-        "without scan lines or of several lidars");
-  ground_.label(scan.image.cloud);
-  if (all)
   {
-    separate_.resize(scan.image.cloud.size());
-    for (std::size_t i = 0; i < separate_.size(); ++i) separate_[i] = scan.image.cloud.points[i].label;
-    labelPixels(scan, separate_, no_class_);
+    ground_.labelUnordered(scan.points, separate_);
+    labelPoints(scan, separate_);
+  }
+  else
+  {
+    ground_.label(scan.image.cloud);
+    if (all) ground_.labelPoints(scan, scan.labels);
   }
   mapIds(scan);
 }

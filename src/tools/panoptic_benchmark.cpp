@@ -3,6 +3,7 @@
 #include "tools/support/benchmark_figure.h"
 #include "tools/support/program.h"
 #include "tools/support/run_benchmark.h"
+#include "tools/support/run_without_labels.h"
 
 #include <sys/ioctl.h>
 
@@ -15,12 +16,14 @@ constexpr const char* kUsage =
     R"(Quality and speed of clustering algorithms on SemanticKITTI, all on the same semantics.
 
   panoptic_benchmark --dataset DIR [options]
+  panoptic_benchmark --dataset DIR --labels none [options]
   panoptic_benchmark --merge a.json b.json .. [--report FILE.json] [--plot DIR]
   panoptic_benchmark --compare a.json b.json ..
 
 Reads each scan once, runs every row (an algorithm with one setting) on it, gives all thing points an instance, those
 hidden in the range image too, and compares with the ground truth by the rules of the official evaluator. Ctrl-C ends
-with the figures so far. Errors go to stderr and make the exit status 1, an interrupt 130.
+with the figures so far. With --labels none no classes are used: the whole chain works on the points alone, and its
+objects are compared with the true ones whatever their class. Errors go to stderr and make the exit status 1, an interrupt 130.
 
 Examples:
   panoptic_benchmark --dataset kitti/dataset --split valid --semantics results/cylinder3d
@@ -64,6 +67,12 @@ Options describeOptions()
       "what the class ids of --semantics mean, e.g. semantic_kitti_training (default: the class table)");
   options.add_options()("columns", numberValue(2048), "of the range image");
   options.add_options()("keep-going", "skip scans that cannot be used and count them in the report");
+  options.add_options()("labels", textValue("none", "classes"),
+                        "classes, or none: objects by geometry alone, against the true objects of all classes");
+  options.add_options()("keep-rings", numberValue(1), "with --labels none: every N-th ring, a sensor of fewer beams");
+  options.add_options()("shuffle", "with --labels none: the points without an order, as of a lidar without scan lines");
+  options.add_options()("structure", textValue("balanced", "balanced"),
+                        "with --labels none: strict, balanced or keep_objects");
   options.add_options()("merge", textValues("FILE.json .."), "add up the reports of shards");
   options.add_options()("compare", textValues("FILE.json .."),
                         "print PQ of things of reports of the same rows side by side");
@@ -164,8 +173,31 @@ void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
 }
 
 /// Exit status.
+int runWithoutLabels(const Given& given)
+{
+  for (const char* option : {"semantics", "survey", "switches", "report", "plot", "merge", "keep-going"})
+    if (isGiven(given, option))
+      throw std::invalid_argument("--labels none and --" + std::string(option) + " exclude each other");
+  BenchmarkSettings settings = readSettings(given);
+  if (settings.jobs != 1) throw std::invalid_argument("--labels none runs in one thread, found --jobs");
+  if (!isGiven(given, "algorithms")) settings.rows = makeRows({"birds_eye"}, listOf(given, "set"));
+  WithoutLabels without;
+  without.keep_rings = numberOf(given, "keep-rings", 1, 64);
+  without.shuffle = isGiven(given, "shuffle");
+  without.structure = textOf(given, "structure");
+  noteInterrupts();
+  RunWithoutLabels benchmark(settings, without,
+                             std::make_shared<const ClassTable>(ClassTable::load(settings.class_table)));
+  printResult(benchmark.run());
+  return interrupted() == 0 ? EXIT_SUCCESS : 128 + interrupted();
+}
+
+/// Exit status.
 int run(const Given& given)
 {
+  if (textOf(given, "labels") == "none") return runWithoutLabels(given);
+  if (textOf(given, "labels") != "classes")
+    throw std::invalid_argument("--labels is '" + textOf(given, "labels") + "', expected classes or none");
   if (isGiven(given, "compare"))
   {
     compare(given);

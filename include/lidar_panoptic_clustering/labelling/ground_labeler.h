@@ -2,8 +2,11 @@
 
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/core/thing_scan.h"
+#include "lidar_panoptic_clustering/labelling/component_judge.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
+#include "lidar_panoptic_clustering/labelling/polar_view.h"
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
+#include "lidar_panoptic_clustering/projection/organized_scan.h"
 
 #include <cstdint>
 #include <string>
@@ -21,6 +24,7 @@ struct GroundLabelerConfig
   double link_m = 0.7;         ///< the widest gap between neighbouring returns of one thing: a car's side window
   double max_height_m = 4.2;   ///< no object is higher: 4.0 m is the limit for vehicles in most of Europe
   double max_length_m = 20.0;  ///< no object is longer: 18.75 m is the European limit for lorries with trailers
+  std::string structure = "balanced";  ///< or strict: fewer false objects; keep_objects: fewer lost ones
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -32,19 +36,30 @@ struct GroundLabelerConfig
     visitor("link_m", self.link_m, 0.05, 5.0);
     visitor("max_height_m", self.max_height_m, 0.5, 100.0);
     visitor("max_length_m", self.max_length_m, 0.5, 1000.0);
+    visitor("structure", self.structure, structureBiasNames());
   }
+};
+
+/// What a scan tells of the ground under the sensor, for diagnostics.
+struct GroundReport
+{
+  /// It has not where there are hardly any returns, or the sensor stands on its head and its driver did not turn the
+  /// cloud round. Then nothing is labelled ground, and the rest means nothing.
+  bool found = false;
+  SlopedPlane plane;
+  double sensor_height_m = 0.0;  ///< over the plane, at right angles to it
+  double slope_deg = 0.0;        ///< of the plane against the sensor's x-y plane: how the sensor is tilted, or the road
 };
 
 /// Labels a scan without any network: ground, structure (walls, fences, poles, trees), and the rest as objects, in the
 /// raw ids of the class table "object".
 ///
 /// The ground is followed from under the sensor (see GroundSurface); what hangs together above it (see ScanComponents)
-/// is structure when it is too high, too long or too wide for a vehicle, hovers over it, is as thin as a pole, as rough
-/// as foliage, or stands on the ground like a wall. The limits are sizes of vehicles and people, none is learnt; the
-/// sensor's height over the ground and a tilt of up to 12 degrees each way are found in each scan.
+/// is judged as a whole, but for people, who are found before what they stand at (see ComponentJudge). The sensor's
+/// height over the ground and a tilt of up to 12 degrees each way are found in each scan.
 ///
-/// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side from a wall, and a
-/// person close to something from that thing.
+/// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side down to the ground
+/// from a wall, and a person who leans on something from that thing.
 ///
 /// Not shared between threads; keeps its memory.
 class GroundLabeler
@@ -59,21 +74,31 @@ public:
   /// Linear in the pixels.
   void label(LabelledCloud& cloud);
 
-  /// Whether the last scan had ground: it has not where there are hardly any returns, or the sensor stands on its head
-  /// and its driver did not turn the cloud round. Then nothing is labelled ground.
+  /// Labels the points of a scan whose image label() was given: those that a pixel shows as there, hidden ones by their
+  /// own height over the ground and, above it, as the nearest return above the ground that is shown within 0.35 m, in
+  /// the 5 x 9 pixels around; where there is none, as structure. Linear in the points.
+  void labelPoints(const OrganizedScan& scan, std::vector<std::uint32_t>& labels) const;
+
+  /// Labels points without scan lines, in any order, by a view of them (see PolarView). Linear.
+  void labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels);
+
+  /// Of the last scan.
+  GroundReport ground() const;
   bool foundGround() const { return found_ground_; }
-  /// The plane under the sensor in the last scan.
   const SlopedPlane& groundPlane() const { return surface_.plane(); }
 
 private:
-  bool isStructure(const ScanComponent& component) const;
+  void judge();
+  std::uint32_t hiddenLabel(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
 
   GroundLabelerConfig config_;
   std::uint32_t ignored_, ground_, structure_, object_;  ///< raw ids
   GroundSurface surface_;
   ScanComponents components_;
+  ComponentJudge judge_;
+  PolarView view_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
-  std::vector<std::uint32_t> label_of_component_;
+  std::vector<std::uint32_t> label_of_component_, label_of_part_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -32,6 +32,7 @@ struct GroundedReturn
 /// offsets, then least squares; it takes in how the sensor is mounted, height and tilt (up to 12 degrees each way). 3.
 /// From under the sensor the ground is followed outwards: a cell's lowest return is ground where a slope of `max_slope`
 /// against the plane leads to it from the cells inside and beside; where there is none, the ground goes on as it was.
+/// What rises within a cell is ground only where it begins: the sill of a car behind metres without ground is none.
 /// 4. Cells without ground of their own lie on the line between the nearest seen inside and outside of them.
 ///
 /// After Himmelsbach et al. 2010 ("Fast segmentation of 3D point clouds for ground vehicles", IV), with neighbouring
@@ -46,6 +47,9 @@ public:
   /// Returns whether there is ground; without it, heights are those above the lowest return.
   bool measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<GroundedReturn>& returns);
 
+  /// Above the ground of the last scan [m].
+  float heightOf(float x, float y, float z) const;
+
   /// The plane under the sensor in the last scan.
   const SlopedPlane& plane() const { return plane_; }
 
@@ -54,10 +58,12 @@ private:
   {
     float x, y, z;
   };
+  /// The returns of a cell: the lowest, and how high they reach.
   struct Lowest
   {
     float z;
     std::uint32_t point;
+    float top;
   };
 
   void sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns);

@@ -5,7 +5,9 @@
 #include "lidar_panoptic_clustering/geometry/footprint.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 
+#include <algorithm>
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -13,25 +15,35 @@ namespace lidar_panoptic_clustering
 /// Returns above the ground that hang together, and what of them tells an object from a wall or a tree.
 struct ScanComponent
 {
+  static constexpr float kFar = std::numeric_limits<float>::infinity();
+
   std::uint32_t point_count = 0;
-  float bottom = 0.0F, top = 0.0F;  ///< [m] above the ground
+  float bottom = kFar, top = -kFar;  ///< [m] above the ground
   Footprint footprint;
 
   bool open_top = false;  ///< goes up to the highest beams: there may be more of it above
 
-  /// Places where a return of the ground lies under one of the component in a column, and those of them where the
-  /// ground is seen to go on underneath, as it does under vehicles and between legs, not at the foot of a wall.
-  std::uint32_t feet = 0, undercut_feet = 0;
+  /// Columns in which a beam came by below the lowest return, where a vehicle has its gap to the ground: `blocked`
+  /// beams ended at the component's foot, `undercut` ones went on underneath. A beam that met the ground before it came
+  /// there tells nothing and is not counted.
+  std::uint32_t blocked = 0, undercut = 0;
 
   /// Triples of neighbours in a scan line, and those that no smooth surface has, as foliage.
   std::uint32_t triples = 0, rough_triples = 0;
+
+  /// Ends of its pieces of scan lines, and those where what comes next lies behind it, or nothing does: it stands free.
+  std::uint32_t ends = 0, free_ends = 0;
+
+  void add(const ScanComponent& other);
 };
 
-/// The connected components of the returns above the ground, on the range image.
+/// The connected components of the returns above the ground, on the range image, at two distances.
 ///
 /// A return's neighbours are the next such returns beside it and above it, up to 8 columns and 4 rows away (a window, a
-/// missing return). Two neighbours hang together when they are closer than `link_distance`, or when the surface
-/// through them is within 60 degrees of upright to the beam, as far out, where neighbouring beams part.
+/// missing return). Two neighbours hang together when they are closer than a distance, or when the surface through them
+/// is within 60 degrees of upright to the beam, as far out, where neighbouring beams part. What hangs together at the
+/// step is a part; parts that hang together at the link are a component. So a person before a wall is a part, though
+/// not a component.
 ///
 /// Linear in the pixels; keeps its memory.
 class ScanComponents
@@ -39,28 +51,55 @@ class ScanComponents
 public:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  /// Takes the returns at least `above` [m] over the ground. `full_turn`: the last column is the first one's neighbour.
-  /// Rows may run from the highest beam down or from the lowest up.
-  void find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above, float link_distance,
+  /// [m]
+  struct Distances
+  {
+    float above;       ///< the ground, from there on returns are taken
+    float step, link;  ///< step <= link
+  };
+
+  /// `full_turn`: the last column is the first one's neighbour. Rows may run from the highest beam down or from the
+  /// lowest up.
+  void find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, const Distances& distances,
             bool full_turn);
 
   /// Numbered by first pixel in row-major order.
+  const std::vector<ScanComponent>& parts() const { return parts_; }
+  /// The sums of their parts; numbered by first part.
   const std::vector<ScanComponent>& list() const { return components_; }
+  /// By part.
+  const std::vector<std::uint32_t>& componentOfPart() const { return component_of_part_; }
+
+  /// The part of a pixel, kNone for those without.
+  std::uint32_t partOf(std::size_t pixel) const { return part_of_[pixel]; }
   /// The component of a pixel, kNone for those without.
-  std::uint32_t of(std::size_t pixel) const { return component_of_[pixel]; }
+  std::uint32_t of(std::size_t pixel) const
+  {
+    return part_of_[pixel] == kNone ? kNone : component_of_part_[part_of_[pixel]];
+  }
 
 private:
-  void link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above, float link_distance,
+  struct Pair
+  {
+    std::uint32_t a, b;
+  };
+
+  void link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, const Distances& distances,
             bool full_turn);
-  void gather(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void gatherParts(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void joinParts();
   void examineTops(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, bool highest_first);
-  void examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, bool highest_first);
-  void examineSurfaces(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
+                   bool highest_first);
+  void examineLines(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
 
   DisjointSets sets_;
-  std::vector<std::uint32_t> component_of_;
+  std::vector<std::uint32_t> part_of_;
   std::vector<std::uint32_t> pixels_;      ///< of the returns above the ground, in row-major order
   std::vector<std::uint32_t> row_before_;  ///< by column: the last row of a return above the ground
-  std::vector<ScanComponent> components_;
+  std::vector<Pair> loose_;                ///< pixels closer than the link, not the step
+  std::vector<ScanComponent> parts_, components_;
+  std::vector<std::uint32_t> component_of_part_;
+  std::uint32_t component_count_ = 0;
 };
 }  // namespace lidar_panoptic_clustering

@@ -58,9 +58,11 @@ public:
   void takeImage(const RawImage& image, OrganizedScan& scan);
   /// `cloud` is what `scan` was made of.
   void takeCloud(const RawCloud& labels, const std::string& label_field, const RawCloud& cloud, OrganizedScan& scan);
-  /// Ground, structure and objects by geometry. The scan's points are labelled `all` only where somebody needs them;
-  /// the pixels always are.
+  /// Ground, structure and objects by geometry, with scan lines or without. The scan's points are labelled `all` only
+  /// where somebody needs them; the pixels always are.
   void takeGeometry(OrganizedScan& scan, bool all);
+  /// What the last geometry tells of the ground.
+  GroundReport ground() const { return ground_.ground(); }
 
   /// Of the last scan labelled by geometry [m]; nothing where no ground was found, and with labels from elsewhere.
   std::optional<float> sensorHeight() const

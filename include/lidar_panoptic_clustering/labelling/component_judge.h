@@ -1,0 +1,79 @@
+#pragma once
+
+#include "lidar_panoptic_clustering/labelling/scan_components.h"
+
+#include <string>
+#include <vector>
+
+namespace lidar_panoptic_clustering
+{
+/// Which side of the bargain between false objects and lost ones.
+enum class StructureBias
+{
+  kStrict,      ///< what may be a wall, a hedge or a pole is: the fewest false objects
+  kBalanced,    ///< as far as sizes, feet and surfaces tell
+  kKeepObjects  ///< what may be an object is: the fewest lost ones
+};
+
+/// "strict", "balanced", "keep_objects"
+const std::vector<std::string>& structureBiasNames();
+/// Throws std::invalid_argument for any other name.
+StructureBias structureBiasFromName(const std::string& name);
+
+/// What decides between an object and a structure, by sizes of vehicles and people, by how things stand and by how
+/// light reaches them. Nothing is learnt.
+///
+/// Structure is what is
+/// - higher, longer or wider than any vehicle, or hovers above everything that drives or walks;
+/// - as thin as a post, or as high as a pole and no longer than a man;
+/// - rough as foliage: neighbours in a scan line bend by as much as they are apart; sheet metal, clothes and walls do
+///   not. Two-wheelers and their riders do, but are small and stand on wheels;
+/// - a wall: beams that come by where a vehicle has its gap to the ground end at its foot. A beam that meets the ground
+///   before it gets there tells nothing, so that a car is not judged by beams that never came near its sill, which are
+///   most where beams are far apart. A vehicle's own wheels block a quarter of its length, so half is asked for, and
+///   less where the outline is a car's;
+/// - the upper part of something tall whose foot is hidden, and too narrow for a van;
+/// - seen through gaps of what is nearer: no foot, and hardly an end beyond which the beams go farther, as at the wall
+///   behind a hedge. What stands in a street has the street behind it on one side at least.
+///
+/// In a structure a part is a person that has a person's size and height, is not rough, and stands free on both sides:
+/// beyond its outline the beams go farther. The same makes a structure of what is around a person and has nothing of a
+/// vehicle: a stall, a bench.
+class ComponentJudge
+{
+public:
+  /// [m]
+  struct Limits
+  {
+    float height, length;  ///< of the largest object
+  };
+
+  ComponentJudge(const Limits& limits, StructureBias bias);
+
+  bool isStructure(const ScanComponent& component) const;
+  /// Whether a part of a component is a person.
+  bool isPerson(const ScanComponent& part) const;
+  /// Whether a component that a person was found in is an object nevertheless.
+  bool isVehicle(const ScanComponent& component) const;
+
+private:
+  struct Appearance;
+  /// Thresholds, by bias.
+  struct Bargain
+  {
+    float most_rough;         ///< share of rough triples in an object
+    float hidden_foot_width;  ///< [m] of what is tall and shows no foot: from there on it may be a van
+    float undercut, cars;     ///< least shares of undercut feet, in general and with a car's outline
+    float least_free;         ///< share of a person's outline
+    float least_in_front;     ///< the same of what shows no foot
+  };
+  static Bargain bargainOf(StructureBias bias);
+  static bool isPole(const ScanComponent& c, const Appearance& a);
+  bool isFoliage(const Appearance& a) const;
+  bool isWall(const ScanComponent& c, const Appearance& a) const;
+  bool isBehind(const ScanComponent& c, const Appearance& a) const;
+
+  Limits limits_;
+  Bargain bargain_;
+};
+}  // namespace lidar_panoptic_clustering
