@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <atomic>
 #include <chrono>
-#include <fstream>
 #include <cstdlib>
+#include <fstream>
 #include <stdexcept>
 #include <string>
 

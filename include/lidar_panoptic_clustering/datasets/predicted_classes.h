@@ -19,8 +19,8 @@ class PredictedClasses
 {
 public:
   /// `label_table`: the table of the files' ids; empty: taken for that of `class_table`. Looks at a few scans of the
-  /// sequence, spread evenly, and throws std::runtime_error with a file's name where LabelNumbering refuses all of them.
-  /// A single bad file is left to read().
+  /// sequence, spread evenly, and throws std::runtime_error with a file's name where LabelNumbering refuses all of
+  /// them. A single bad file is left to read().
   PredictedClasses(const SemanticKittiSequence& sequence, std::shared_ptr<const ClassTable> class_table,
                    const std::string& label_table);
 

@@ -33,19 +33,20 @@ TemporalQuality temporalQualityFromJson(const nlohmann::json& json, std::shared_
 /// A scan that could not be evaluated.
 struct SkippedScan
 {
-  std::string scan;  ///< "sequence/scan", 08/000123
-  std::string reason;
+  std::string scan;    ///< "sequence/scan", 08/000123
+  std::string reason;  ///< with what was expected and found
 };
 
 /// What an evaluation leaves behind: counts that can be merged, saved and loaded without loss.
 struct EvaluationReport
 {
-  PanopticQuality quality;
-  ObjectErrorCounts objects;
+  PanopticQuality quality;                   ///< over all scans
+  ObjectErrorCounts objects;                 ///< over all scans
   std::optional<TemporalQuality> temporal;   ///< where ids were followed from scan to scan
   std::optional<std::uint64_t> id_switches;  ///< where scans came in their order, see IdSwitches
-  std::vector<SkippedScan> skipped;
+  std::vector<SkippedScan> skipped;          ///< in the order of the scans
 
+  /// Empty; unmatched segments of fewer points than `min_points` will not count.
   explicit EvaluationReport(std::shared_ptr<const ClassTable> table, int min_points = 50)
       : quality(std::move(table), min_points)
   {

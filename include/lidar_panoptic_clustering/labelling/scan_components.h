@@ -17,9 +17,9 @@ struct ScanComponent
 {
   static constexpr float kFar = std::numeric_limits<float>::infinity();
 
-  std::uint32_t point_count = 0;
+  std::uint32_t point_count = 0;     ///< its returns
   float bottom = kFar, top = -kFar;  ///< [m] above the ground
-  Footprint footprint;
+  Footprint footprint;               ///< in bird's-eye view
 
   bool open_top = false;  ///< goes up to the highest beams: there may be more of it above
 
@@ -49,7 +49,7 @@ struct ScanComponent
 class ScanComponents
 {
 public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;  ///< no component
 
   /// [m]
   struct Distances
