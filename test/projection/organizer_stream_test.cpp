@@ -194,7 +194,8 @@ TEST_F(OrganizerStream, AFieldRingThatHoldsSomethingElseIsRefused)
 {
   auto cloud = cloudFrom(kByRing);
   std::mt19937 random(1);
-  for (std::uint32_t i = 0; i < cloud.message.header.width; ++i) cloud.message.set(0, i, "ring", random() % 16);
+  for (std::uint32_t i = 0; i < cloud.message.header.width; ++i)
+    cloud.message.set(0, i, "ring", static_cast<double>(random() % 16));
   const std::string error = send(cloud);
   EXPECT_NE(error.find("expected points of one ring to have one elevation, found that it varies by"), std::string::npos)
       << error;

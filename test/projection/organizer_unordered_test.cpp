@@ -241,11 +241,18 @@ TEST(OrganizerMerged, OnlyAlgorithmsOnPointsTakeIt)
     {
       const auto error = errorOf([&] { runAlgorithm(algorithm, merged); });
       const bool by_lines = makeAlgorithm(algorithm).clusterer->needsScanLines();
-      if (algorithm == "depth" || algorithm == "scan_line_run") EXPECT_TRUE(by_lines) << algorithm;
+      if (algorithm == "depth" || algorithm == "scan_line_run")
+      {
+        EXPECT_TRUE(by_lines) << algorithm;
+      }
       if (by_lines)
+      {
         EXPECT_NE(error.find("expected scan lines (rows of an organised cloud), found one row of "), std::string::npos);
+      }
       else
+      {
         EXPECT_EQ(error, "") << algorithm;
+      }
     }
   }
 }

@@ -103,7 +103,10 @@ TEST_F(TrackerTest, ASensorThatDrivesAndTurnsSeesAParkedCarAtRest)
     const TrackedObject object = track(0.1 * k).at(1);
     if (k == 0) id = object.track;
     ASSERT_EQ(object.track, id);
-    if (k > 5) EXPECT_LT(object.velocity.norm(), 0.1);
+    if (k > 5)
+    {
+      EXPECT_LT(object.velocity.norm(), 0.1);
+    }
   }
 }
 
@@ -170,7 +173,10 @@ TEST_F(TrackerTest, OneLeavesAndAnotherEntersAtTheSamePlace)
     if (k > 30) car(2, 10.0, 0.0);
     const auto objects = track(0.1 * k);
     EXPECT_EQ(objects.at(1).track, first);
-    if (k > 30) EXPECT_NE(objects.at(2).track, first);
+    if (k > 30)
+    {
+      EXPECT_NE(objects.at(2).track, first);
+    }
   }
   // gone for longer than anything is kept: the next one there is new
   begin();
@@ -192,7 +198,10 @@ TEST_F(TrackerTest, StopAndTurn)
     const TrackedObject object = track(0.1 * k).at(1);
     if (k == 0) id = object.track;
     ASSERT_EQ(object.track, id) << k;
-    if (k > 65) EXPECT_LT(object.velocity.norm(), 0.15) << k;
+    if (k > 65)
+    {
+      EXPECT_LT(object.velocity.norm(), 0.15) << k;
+    }
     x += 0.1 * speed * std::cos(yaw), y += 0.1 * speed * std::sin(yaw);
     if (k >= 10 && k < 30) yaw += 0.1 * speed / 12.0;
     if (k >= 30) speed = std::max(0.0, speed - 0.5);
@@ -218,7 +227,10 @@ TEST_F(TrackerTest, PartsOfATornObjectHaveItsId)
     const auto objects = track(0.1 * k);
     if (k == 0) id = objects.at(1).track;
     EXPECT_EQ(objects.at(1).track, id) << k;
-    if (is_torn) EXPECT_EQ(objects.at(2).track, id) << k;
+    if (is_torn)
+    {
+      EXPECT_EQ(objects.at(2).track, id) << k;
+    }
     EXPECT_NE(objects.at(3).track, id);
   }
 }
