@@ -32,35 +32,37 @@ struct RecallCounts
   std::uint64_t objects = 0, iou_50 = 0, iou_70 = 0;       ///< with a segment of an IoU above 0.5, 0.7
   std::uint64_t lost = 0, merged = 0, split = 0, cut = 0;  ///< of those without an IoU above 0.5
 
-  RecallCounts& operator+=(const RecallCounts& other);
-  bool operator==(const RecallCounts& other) const;
+  RecallCounts& operator+=(const RecallCounts& other);  ///< adds the numbers of another part
+  bool operator==(const RecallCounts& other) const;     ///< whether all numbers are equal
 };
 
 /// Points by whether they are ground, in the result and in the truth.
 struct GroundCounts
 {
-  std::uint64_t both = 0, found = 0, truth = 0;
+  std::uint64_t both = 0, found = 0, truth = 0;  ///< in both, in the result, in the truth
 
+  /// Shares, 0 to 1; 0 where there is nothing to share.
   double precision() const { return found == 0 ? 0.0 : static_cast<double>(both) / static_cast<double>(found); }
+  /// Of the true ground, 0 to 1.
   double recall() const { return truth == 0 ? 0.0 : static_cast<double>(both) / static_cast<double>(truth); }
-  double iou() const;
+  double iou() const;  ///< 0 to 1; 0 where there is no ground at all
 };
 
 /// A true object of one scan.
 struct RecalledObject
 {
-  std::uint32_t class_id = 0, instance = 0;  ///< of the truth
-  std::uint32_t points = 0;
-  float range_m = 0.0F;  ///< horizontal, mean over its points
-  double best_iou = 0.0;
-  RecallOutcome outcome = RecallOutcome::kLost;
+  std::uint32_t class_id = 0, instance = 0;      ///< of the truth
+  std::uint32_t points = 0;                      ///< returns
+  float range_m = 0.0F;                          ///< horizontal, mean over its points
+  double best_iou = 0.0;                         ///< of its best segment, 0 to 1
+  RecallOutcome outcome = RecallOutcome::kLost;  ///< what became of it
 };
 
 /// A segment that lies mostly on no thing.
 struct FalseSegment
 {
-  std::uint32_t instance = 0;
-  std::uint32_t points = 0;
+  std::uint32_t instance = 0;  ///< of the result
+  std::uint32_t points = 0;    ///< returns
 };
 
 /// A scan's result and truth, by point of the file. Does not own the arrays.
@@ -68,11 +70,12 @@ struct RecallScan
 {
   const std::uint32_t* found_class = nullptr;     ///< raw ids of the table "object"
   const std::uint32_t* found_instance = nullptr;  ///< 0 for none
-  ScanLabels truth;
-  const float* range_m = nullptr;  ///< horizontal
-  std::size_t size = 0;
+  ScanLabels truth;                               ///< of the data set
+  const float* range_m = nullptr;                 ///< horizontal
+  std::size_t size = 0;                           ///< points, the length of each array
 };
 
+/// What counts as an object, and in which bins of range recall is given.
 struct ObjectRecallConfig
 {
   std::uint32_t min_points = 50;                             ///< of true objects and of false segments
@@ -106,24 +109,24 @@ public:
   /// Throws std::invalid_argument where the configs differ.
   ObjectRecall& operator+=(const ObjectRecall& other);
 
-  const RecallCounts& all() const { return all_; }
+  const RecallCounts& all() const { return all_; }  ///< over all objects
   /// By name of the truth's class; those that occur.
   const std::map<std::string, RecallCounts>& byClass() const { return by_class_; }
   /// By bin of ObjectRecallConfig::range_ends_m.
   const std::vector<RecallCounts>& byRange() const { return by_range_; }
-  const GroundCounts& ground() const { return ground_; }
-  std::uint64_t scanCount() const { return scan_count_; }
-  std::uint64_t falseSegments() const { return false_segments_; }
+  const GroundCounts& ground() const { return ground_; }           ///< points of ground
+  std::uint64_t scanCount() const { return scan_count_; }          ///< scans added
+  std::uint64_t falseSegments() const { return false_segments_; }  ///< over all scans
   /// In false segments.
   std::uint64_t falsePoints() const { return false_points_; }
   /// Sums over all scans.
   double overSegmentation() const { return over_; }
-  double underSegmentation() const { return under_; }
-  const ObjectRecallConfig& config() const { return config_; }
+  double underSegmentation() const { return under_; }           ///< likewise, of segments
+  const ObjectRecallConfig& config() const { return config_; }  ///< as given
 
   /// Of the scan added last, in order of their first point.
   const std::vector<RecalledObject>& objects() const { return objects_; }
-  const std::vector<FalseSegment>& lastFalseSegments() const { return last_false_; }
+  const std::vector<FalseSegment>& lastFalseSegments() const { return last_false_; }  ///< likewise
 
 private:
   struct Pair

@@ -50,32 +50,32 @@ public:
   /// give the same figures to the bit.
   TemporalFigures figures() const;
 
-  std::uint64_t scanCount() const { return scan_count_; }
-  int minPoints() const { return min_points_; }
-  const ClassTable& table() const { return *table_; }
+  std::uint64_t scanCount() const { return scan_count_; }  ///< scans added
+  int minPoints() const { return min_points_; }            ///< points that a tube has to have in a scan to count there
+  const ClassTable& table() const { return *table_; }      ///< as given
 
   /// A thing class and its instance; in order of class.
   using TrueTube = std::pair<ClassIndex, std::uint32_t>;
   /// The tubes of a sequence and the points they share.
   struct Sequence
   {
-    std::map<TrueTube, std::uint64_t> truth;
-    std::map<std::uint32_t, std::uint64_t> predicted;
-    std::map<std::pair<TrueTube, std::uint32_t>, std::uint64_t> shared;
+    std::map<TrueTube, std::uint64_t> truth;                             ///< points of each true tube
+    std::map<std::uint32_t, std::uint64_t> predicted;                    ///< points of each predicted tube, by id
+    std::map<std::pair<TrueTube, std::uint32_t>, std::uint64_t> shared;  ///< points that lie in both
   };
   /// Points of a class in both, in the prediction and in the truth.
   struct ClassPoints
   {
-    std::uint64_t both = 0, predicted = 0, truth = 0;
+    std::uint64_t both = 0, predicted = 0, truth = 0;  ///< points, by where they have the class
   };
   /// All that is counted; what is ignored stands under kUnknownClass.
   struct Counts
   {
-    std::map<std::string, Sequence> sequences;
-    std::vector<ClassPoints> classes;  ///< by ClassIndex
-    std::uint64_t scans = 0;
+    std::map<std::string, Sequence> sequences;  ///< by name
+    std::vector<ClassPoints> classes;           ///< by ClassIndex
+    std::uint64_t scans = 0;                    ///< scans added
   };
-  Counts counts() const { return {sequences_, classes_, scan_count_}; }
+  Counts counts() const { return {sequences_, classes_, scan_count_}; }  ///< all that was counted so far
   /// Puts back what was saved. Throws std::invalid_argument when there are not as many classes as the table has, or a
   /// tube's class is no thing of it.
   void restore(Counts counts);
@@ -96,12 +96,14 @@ private:
 class IdSwitches
 {
 public:
+  /// `min_points`: an object with no more points in a scan does not count there.
   explicit IdSwitches(int min_points = 50) : min_points_(min_points) {}
 
   /// Scans of a sequence come in their order.
   void addScan(const SegmentOverlaps& scan);
   /// Another sequence begins.
   void startSequence() { last_id_.clear(); }
+  /// Switches so far, over all sequences.
   std::uint64_t count() const { return count_; }
 
 private:

@@ -48,8 +48,10 @@ public:
     float height, length;  ///< of the largest object
   };
 
+  /// `bias`: which error is the smaller one where the geometry leaves both open.
   ComponentJudge(const Limits& limits, StructureBias bias);
 
+  /// Whether a component is a wall, a tree, a pole or the like; a few comparisons.
   bool isStructure(const ScanComponent& component) const;
   /// Whether a part of a component is a person.
   bool isPerson(const ScanComponent& part) const;

@@ -46,7 +46,7 @@ struct GroundReport
   /// It has not where there are hardly any returns, or the sensor stands on its head and its driver did not turn the
   /// cloud round. Then nothing is labelled ground, and the rest means nothing.
   bool found = false;
-  SlopedPlane plane;
+  SlopedPlane plane;             ///< of the ground around the sensor, in its frame
   double sensor_height_m = 0.0;  ///< over the plane, at right angles to it
   double slope_deg = 0.0;        ///< of the plane against the sensor's x-y plane: how the sensor is tilted, or the road
 };
@@ -84,7 +84,9 @@ public:
 
   /// Of the last scan.
   GroundReport ground() const;
+  /// Whether the last scan shows ground under the sensor.
   bool foundGround() const { return found_ground_; }
+  /// The ground around the sensor; without ground it means nothing.
   const SlopedPlane& groundPlane() const { return surface_.plane(); }
 
 private:

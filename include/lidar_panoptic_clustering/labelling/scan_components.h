@@ -15,7 +15,7 @@ namespace lidar_panoptic_clustering
 /// Returns above the ground that hang together, and what of them tells an object from a wall or a tree.
 struct ScanComponent
 {
-  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  static constexpr float kFar = std::numeric_limits<float>::infinity();  ///< beyond any height
 
   std::uint32_t point_count = 0;     ///< its returns
   float bottom = kFar, top = -kFar;  ///< [m] above the ground
@@ -34,7 +34,7 @@ struct ScanComponent
   /// Ends of its pieces of scan lines, and those where what comes next lies behind it, or nothing does: it stands free.
   std::uint32_t ends = 0, free_ends = 0;
 
-  void add(const ScanComponent& other);
+  void add(const ScanComponent& other);  ///< joins the other one to it
 };
 
 /// The connected components of the returns above the ground, on the range image, at two distances.

@@ -36,8 +36,8 @@ Displacement displacementOf(const Extent& expected, const Extent& seen);
 /// a Kalman filter with constant velocity.
 struct MotionState
 {
-  Eigen::Vector4d mean = Eigen::Vector4d::Zero();  ///< x, y [m], velocity in x, y [m/s]
-  Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();
+  Eigen::Vector4d mean = Eigen::Vector4d::Zero();            ///< x, y [m], velocity in x, y [m/s]
+  Eigen::Matrix4d covariance = Eigen::Matrix4d::Identity();  ///< of the mean
 
   /// At rest, as far as the prior knows.
   static MotionState at(double x, double y, double noise_m, const MotionPrior& prior);

@@ -15,12 +15,13 @@ namespace lidar_panoptic_clustering
 /// An object's extent in bird's-eye view along four axes 45 degrees apart: x, y, (x + y) / sqrt 2, (x - y) / sqrt 2.
 struct Extent
 {
-  static constexpr std::size_t kAxes = 4;
-  static constexpr float kFar = std::numeric_limits<float>::infinity();
+  static constexpr std::size_t kAxes = 4;                                ///< directions in which the extent is kept
+  static constexpr float kFar = std::numeric_limits<float>::infinity();  ///< of an empty extent
 
   std::array<float, kAxes> min{kFar, kFar, kFar, kFar};      ///< [m]
   std::array<float, kAxes> max{-kFar, -kFar, -kFar, -kFar};  ///< [m]
 
+  /// Extends it to a point [m].
   void add(float x, float y)
   {
     constexpr float kHalfRoot = 0.70710678F;
@@ -44,6 +45,7 @@ struct Extent
     }
     return most;
   }
+  /// Extends it to all of another one.
   void add(const Extent& other)
   {
     for (std::size_t k = 0; k < kAxes; ++k)
@@ -66,6 +68,7 @@ struct Observation
   float min_z = 0.0F, max_z = 0.0F;        ///< likewise [m]
 };
 
+/// The instances of one scan, and where the sensor was.
 struct Observations
 {
   Eigen::Vector3d origin = Eigen::Vector3d::Zero();  ///< the sensor in the fixed frame [m]

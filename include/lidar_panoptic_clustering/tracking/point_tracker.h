@@ -20,8 +20,8 @@ public:
   /// Throws std::invalid_argument without a table, and on a value outside its range.
   explicit PointTracker(std::shared_ptr<const ClassTable> table, const TrackerConfig& config = {});
 
-  Tracker& tracker() { return tracker_; }
-  const Tracker& tracker() const { return tracker_; }
+  Tracker& tracker() { return tracker_; }              ///< what follows the outlines
+  const Tracker& tracker() const { return tracker_; }  ///< the same
 
   /// Begins a scan; `fixed_from_sensor`: where the sensor is in the frame that objects are followed in.
   void begin(std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor);
@@ -37,7 +37,7 @@ public:
   const TrackedObject& objectOf(std::size_t i) const { return (*objects_)[place_[i]]; }
   /// The scan's objects, and what was seen of each: parallel, several of them may be parts of one track.
   const std::vector<TrackedObject>& objects() const { return *objects_; }
-  const std::vector<Observation>& observations() const { return seen_->list; }
+  const std::vector<Observation>& observations() const { return seen_->list; }  ///< likewise, parallel to objects()
 
 private:
   struct Point

@@ -14,7 +14,7 @@ namespace lidar_panoptic_clustering
 class SparseAssignment
 {
 public:
-  static constexpr std::uint32_t kNone = 0xFFFFFFFF;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;  ///< the column of a row that stays alone
 
   /// Begins a problem without pairs.
   void reset(std::size_t columns);

@@ -13,6 +13,7 @@
 
 namespace lidar_panoptic_clustering
 {
+/// Parameters of the tracker.
 struct TrackerConfig
 {
   double max_missed_s = 1.5;   ///< an object that is not seen for longer is a new one when it comes again
@@ -29,12 +30,12 @@ struct TrackerConfig
 /// An object as it is known after a scan.
 struct TrackedObject
 {
-  std::uint32_t track = 0;  ///< its id, from 1; never given twice by one tracker
-  ClassIndex class_index = kUnknownClass;
-  std::int64_t first_seen_us = 0, last_seen_us = 0;    ///< stamps
-  std::uint32_t scans = 0;                             ///< in which it was seen
-  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();  ///< over ground, in the axes of the fixed frame [m/s]
-  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();
+  std::uint32_t track = 0;                                        ///< its id, from 1; never given twice by one tracker
+  ClassIndex class_index = kUnknownClass;                         ///< voted over its life
+  std::int64_t first_seen_us = 0, last_seen_us = 0;               ///< stamps
+  std::uint32_t scans = 0;                                        ///< in which it was seen
+  Eigen::Vector2d velocity = Eigen::Vector2d::Zero();             ///< over ground, in the axes of the fixed frame [m/s]
+  Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();  ///< of the velocity [m^2/s^2]
 };
 
 /// Ids that stay with an object from scan to scan.
@@ -79,7 +80,7 @@ public:
   /// Forgets all tracks and numbers from 1 again.
   void restart();
 
-  std::size_t liveTracks() const { return tracks_.size(); }
+  std::size_t liveTracks() const { return tracks_.size(); }  ///< tracks that may still be seen again
   /// Whether the track may still be seen again. Logarithmic in the tracks.
   bool isAlive(std::uint32_t track) const;
 
