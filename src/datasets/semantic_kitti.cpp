@@ -111,7 +111,7 @@ std::optional<Eigen::Isometry3d> readCalibration(const std::string& path)
 
 void readLabelsOf(const std::string& path, std::size_t point_count, std::vector<std::uint32_t>& labels)
 {
-  const std::uintmax_t bytes = point_count > 0 && fs::exists(path) ? fs::file_size(path) : 0;
+  const std::uintmax_t bytes = point_count > 0 && fs::is_regular_file(path) ? fs::file_size(path) : 0;
   for (const auto& [type, size] : {std::pair{"uint8", 1}, std::pair{"uint16", 2}, std::pair{"int64", 8}})
     if (bytes == point_count * static_cast<std::size_t>(size) && bytes > 0)
       throw std::runtime_error(path + ": expected " + std::to_string(point_count) +

@@ -120,9 +120,9 @@ UnusedParameters findUnusedParameters(const ros::NodeHandle& nh, const std::vect
                                       const std::vector<std::string>& others)
 {
   UnusedParameters unused;
-  const std::string& space = nh.getNamespace();
+  const std::string space = nh.getNamespace() == "/" ? "" : nh.getNamespace();
   XmlRpc::XmlRpcValue values;
-  if (!ros::param::get(space, values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return unused;
+  if (!ros::param::get(nh.getNamespace(), values) || values.getType() != XmlRpc::XmlRpcValue::TypeStruct) return unused;
   for (auto& [name, value] : values)
   {
     const std::string full_name = space + "/" + name;

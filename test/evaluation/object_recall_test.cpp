@@ -202,8 +202,10 @@ TEST(ObjectRecall, EqualsBruteForceOnRandomScansAndAddsUp)
     for (int k = 0; k < 40; ++k)
     {
       const std::uint32_t classes[] = {kCar, kPerson, kRoad, kBuilding, 0, kVegetation};
-      const std::uint32_t id = classes[draw(6)], segment = draw(5);
-      runs.push_back({1 + draw(9), id, id <= kPerson ? draw(4) : 0, segment > 0 ? kObject : 1 + draw(2), segment});
+      const std::uint32_t id = classes[draw(6)], instance = id <= kPerson ? draw(4) : 0;
+      // mostly each true object has a segment of its own
+      const std::uint32_t segment = draw(8) == 0 ? draw(9) : instance == 0 ? 0 : instance + (id == kCar ? 0 : 4);
+      runs.push_back({1 + draw(9), id, instance, segment > 0 ? kObject : 1 + draw(2), segment});
     }
     const Scan scan(runs);
     whole.addScan(scan.view());

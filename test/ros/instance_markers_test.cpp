@@ -95,7 +95,8 @@ TEST_F(InstanceMarkersTest, OrderOfMarkersDoesNotMatterInTheEnd)
 TEST_F(InstanceMarkersTest, GiveRVizNothingToWarnOf)
 {
   update(3, 10.0);
-  for (const Marker& marker : update(2, 10.1)->markers)
+  const auto array = update(2, 10.1);
+  for (const Marker& marker : array->markers)
   {
     const auto& q = marker.pose.orientation;
     EXPECT_NEAR(q.x * q.x + q.y * q.y + q.z * q.z + q.w * q.w, 1.0, 1e-6);

@@ -157,7 +157,7 @@ TEST_F(LabelsFromImage, OfAnotherTableAreRefused)
       {
         for (auto& id : image.data) id = id == kRoad ? 24 : 17;
       },
-      "expected class ids of the table 'semantic_kitti' (parameter label_table)");
+      "expected class ids of the table 'semantic_kitti' (parameter label_table, which is not set)");
 }
 
 TEST_F(LabelsFromImage, OfAnotherTableAreTurnedIntoTheOneClusteredWith)

@@ -2,6 +2,7 @@
 #include "graph_fixture.h"
 #include "ros/parameter_server.h"
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
@@ -68,7 +69,18 @@ TEST_F(UnusedParametersTest, ParametersOfANodeBelowAreItsOwn)
   ros::NodeHandle nh;
   const std::string node = ros::this_node::getName();
   ros::param::set(node + "/columns", 7);
-  EXPECT_EQ(findUnusedParameters(ros::NodeHandle(node.substr(0, node.rfind('/'))), known_).unknown, Names());
+  const Names unknown = findUnusedParameters(ros::NodeHandle(node.substr(0, node.rfind('/'))), known_).unknown;
+  EXPECT_EQ(std::count_if(unknown.begin(), unknown.end(),
+                          [&node](const std::string& warning)
+                          { return warning.find(node + "/columns") != std::string::npos; }),
+            0);
+  // a namespace that is no node's is looked into
+  ros::param::set(node + "_settings/columns", 7);
+  const Names with_settings = findUnusedParameters(ros::NodeHandle(node.substr(0, node.rfind('/'))), known_).unknown;
+  EXPECT_EQ(std::count_if(with_settings.begin(), with_settings.end(),
+                          [&node](const std::string& warning)
+                          { return warning.find(node + "_settings/columns") != std::string::npos; }),
+            1);
 }
 
 TEST_F(UnusedParametersTest, ThoseOfAlternativesAreToldApart)

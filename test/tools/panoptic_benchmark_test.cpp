@@ -64,6 +64,7 @@ TEST_F(PanopticBenchmark, TrackedIdsLastAndAreMeasured)
     }
   ASSERT_EQ(benchmark("--algorithms euclidean --track --output out --report again.json"), 0) << err();
   EXPECT_EQ(quality("again.json"), quality("r.json"));
+  fs::remove(folder_ / "r.json");
   expectFailure("--track --shard 1/2", {"--track", "--shard"});
 }
 

@@ -146,7 +146,7 @@ private:
     const std::filesystem::path folder = std::filesystem::path(set_.dataset) / "sequences" / sequence.name();
     const std::string truth = (folder / "labels" / (name + ".label")).string();
     const std::filesystem::path points = folder / "velodyne" / (name + ".bin");
-    if (std::filesystem::exists(points))
+    if (std::filesystem::is_regular_file(points))
       sequence.readLabels(scan.number, std::filesystem::file_size(points) / (4 * sizeof(float)), buffers.truth);
     else
       readLabelFile(truth, buffers.truth);
