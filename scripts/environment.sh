@@ -25,7 +25,11 @@ ros_setup=/opt/ros/noetic/setup.bash
 # roslaunch asks the system for the address of "localhost", which a bare container may not know. There it is told by
 # our own hook into python, and all else goes by number; /etc/hosts is the administrator's.
 local_host=localhost
-getent hosts localhost > /dev/null || local_host=127.0.0.1
+if ! getent hosts localhost > /dev/null; then
+  local_host=127.0.0.1
+  # before cmake is run: catkin puts the variables of that moment around each test
+  export PYTHONPATH=$root/scripts/without_localhost${PYTHONPATH:+:$PYTHONPATH}
+fi
 
 # Makes what a shell needs to use ROS, without its habit of reading unset variables. $1: a setup.bash
 load_ros() {
@@ -41,5 +45,4 @@ load_ros() {
   exec {errors}>&-
   # a container's host name often resolves to nothing
   [ -n "${ROS_IP:-}${ROS_HOSTNAME:-}" ] || export ROS_HOSTNAME=$local_host
-  [ $local_host = localhost ] || export PYTHONPATH=$root/scripts/without_localhost${PYTHONPATH:+:$PYTHONPATH}
 }
