@@ -1,7 +1,7 @@
 #include "ros/cloud_subscription.h"
 
 #include "damaged_cloud.h"
-#include "raw_message.h"
+#include "labelled_scene.h"
 
 #include <gtest/gtest.h>
 #include <pcl_conversions/pcl_conversions.h>
@@ -16,25 +16,7 @@ namespace
 {
 sensor_msgs::PointCloud2Ptr toRos(const RawMessage& raw)
 {
-  const auto message = boost::make_shared<sensor_msgs::PointCloud2>();
-  message->header.frame_id = "lidar";
-  message->header.stamp = ros::Time(12, 345678999);
-  message->height = raw.header.height;
-  message->width = raw.header.width;
-  message->point_step = raw.header.point_step;
-  message->row_step = raw.header.row_step;
-  message->is_bigendian = raw.header.is_bigendian;
-  for (const auto& field : raw.header.fields)
-  {
-    sensor_msgs::PointField ros_field;
-    ros_field.name = field.name;
-    ros_field.offset = field.offset;
-    ros_field.datatype = field.datatype;
-    ros_field.count = field.count;
-    message->fields.push_back(ros_field);
-  }
-  message->data = raw.bytes;
-  return message;
+  return toRosMessage(raw, "lidar", ros::Time(12, 345678999));
 }
 
 /// Two points, (1, 2, 3) and (4, 5, 6), of classes 10 and 252.
