@@ -1,13 +1,9 @@
 # The Python package lidar_panoptic_clustering: the extension _core (src/python) and what is Python (python/). In a build
 # folder the Python files are links, so that a change counts at once.
-#
-# catkin generates messages and parameters into a Python package of the same name, with an empty __init__.py wherever
-# there is none yet. One of ours has to lie there before, and catkin must not install its own over it. A setup.py with
-# catkin_python_setup() would do that too, but runs setuptools at installation, and knows no extension made by cmake.
 
 set(python_package_source ${CMAKE_CURRENT_SOURCE_DIR}/python/${PROJECT_NAME})
 
-# Before catkin generates anything: links the Python files into a folder of the build.
+# Links the Python files into a folder of the build.
 function(link_python_package folder)
   file(GLOB files RELATIVE ${python_package_source} CONFIGURE_DEPENDS ${python_package_source}/*.py
        ${python_package_source}/*.pyi ${python_package_source}/py.typed)
@@ -16,6 +12,17 @@ function(link_python_package folder)
     file(CREATE_LINK ${python_package_source}/${file} ${folder}/${file} SYMBOLIC)
   endforeach()
 endfunction()
+
+# Before catkin generates anything: makes one package of what it generates into `generated` (messages, parameters) and
+# of `folder`. catkin writes an empty __init__.py wherever there is none, and installs the whole of `generated`, links
+# too. So all that lies there of ours is an __init__.py, which leads to the folder, and which catkin is told, as by
+# catkin_python_setup(), not to install. (That function would run setuptools at installation and knows no extension made
+# by cmake.)
+macro(relay_python_package generated folder)
+  set(python_package_folder ${folder})
+  configure_file(cmake/python_relay.py.in ${generated}/__init__.py @ONLY)
+  set(${PROJECT_NAME}_CATKIN_PYTHON_SETUP_HAS_PACKAGE_INIT TRUE)
+endmacro()
 
 # Looks for what the extension needs: sets `found`, Python3_INCLUDE_DIRS, pybind11_INCLUDE_DIR and python_suffix.
 macro(find_python_extension found)
@@ -46,7 +53,7 @@ function(add_python_extension folder destination library)
   add_library(_core MODULE ${sources})
   target_include_directories(_core PRIVATE src)
   target_include_directories(_core SYSTEM PRIVATE ${pybind11_INCLUDE_DIR} ${Python3_INCLUDE_DIRS})
-  target_link_libraries(_core PRIVATE ${PROJECT_NAME} ${PROJECT_NAME}_options Threads::Threads)
+  target_link_libraries(_core PRIVATE ${PROJECT_NAME} ${PROJECT_NAME}_options nlohmann_json::nlohmann_json Threads::Threads)
   set_target_properties(
     _core PROPERTIES PREFIX "" SUFFIX "${python_suffix}" CXX_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${folder}
                      INSTALL_RPATH "$ORIGIN/${library}")
