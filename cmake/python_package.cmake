@@ -63,3 +63,21 @@ function(add_python_extension folder destination library)
             PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
   endif()
 endfunction()
+
+# The tests of test/python, on the package as it lies in the build.
+function(add_python_tests)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import pytest" RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  if(failed)
+    message(STATUS "no pytest for ${Python3_EXECUTABLE}: the Python package is not tested")
+    return()
+  endif()
+  if(LIDAR_PANOPTIC_ROS)
+    set(path ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_PYTHON_DESTINATION})
+  else()
+    get_filename_component(path ${python_build_folder} DIRECTORY)
+  endif()
+  add_test(NAME python COMMAND ${Python3_EXECUTABLE} -m pytest -q -p no:cacheprovider ${CMAKE_CURRENT_SOURCE_DIR}/test/python)
+  set_tests_properties(
+    python PROPERTIES ENVIRONMENT "PYTHONPATH=${path}:$ENV{PYTHONPATH};PYTHONDONTWRITEBYTECODE=1;\
+LIDAR_PANOPTIC_BENCHMARK=$<TARGET_FILE:panoptic_benchmark>;LIDAR_PANOPTIC_WORKSPACE=$<BOOL:${LIDAR_PANOPTIC_ROS}>")
+endfunction()
