@@ -82,8 +82,8 @@ HiddenPointLabeller::HiddenPointLabeller(std::shared_ptr<const ClassTable> table
     if ((*table_)[static_cast<ClassIndex>(i)].isThing()) thing_class_[i] = static_cast<ClassIndex>(i);
 }
 
-void HiddenPointLabeller::label(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-                                const Projection& projection, const std::vector<std::uint32_t>& instance_of_pixel,
+void HiddenPointLabeller::label(ScanPoints scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
+                                const std::vector<std::uint32_t>& instance_of_pixel,
                                 std::vector<std::uint32_t>& instance)
 {
   requireSize("labels, one a point", labels.size(), scan.size());
@@ -134,8 +134,8 @@ void HiddenPointLabeller::takeOwners(const std::vector<std::uint32_t>& labels, c
   }
 }
 
-std::uint32_t HiddenPointLabeller::nearestOwner(const std::vector<ScanPoint>& scan, const Projection& projection,
-                                                std::uint32_t point, ClassIndex class_index, const Window& window) const
+std::uint32_t HiddenPointLabeller::nearestOwner(ScanPoints scan, const Projection& projection, std::uint32_t point,
+                                                ClassIndex class_index, const Window& window) const
 {
   const ScanPoint& from = scan[point];
   float least = std::numeric_limits<float>::infinity();

@@ -38,7 +38,7 @@ public:
   /// thing pixel has one; where owners have none (a minimum size dropped them), their hidden points have none either.
   /// A point without coordinates is near no owner. Throws std::invalid_argument when sizes contradict each other.
   /// Linear in points and pixels, as the windows are bounded.
-  void label(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
+  void label(ScanPoints scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
              const std::vector<std::uint32_t>& instance_of_pixel, std::vector<std::uint32_t>& instance);
 
 private:
@@ -57,8 +57,8 @@ private:
 
   void takeOwners(const std::vector<std::uint32_t>& labels, const Projection& projection,
                   const std::vector<std::uint32_t>& instance_of_pixel, std::vector<std::uint32_t>& instance);
-  std::uint32_t nearestOwner(const std::vector<ScanPoint>& scan, const Projection& projection, std::uint32_t point,
-                             ClassIndex class_index, const Window& window) const;
+  std::uint32_t nearestOwner(ScanPoints scan, const Projection& projection, std::uint32_t point, ClassIndex class_index,
+                             const Window& window) const;
   void addOrphan(std::uint32_t point, ClassIndex class_index, const Projection& projection);
   void numberOrphans(const LabelledCloud& image, std::vector<std::uint32_t>& instance);
 
