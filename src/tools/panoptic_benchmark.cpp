@@ -1,6 +1,6 @@
 #include "core/aside_file.h"
-#include "tools/support/benchmark_charts.h"
 #include "tools/support/benchmark_figure.h"
+#include "tools/support/plot_report.h"
 #include "tools/support/program.h"
 #include "tools/support/run_benchmark.h"
 #include "tools/support/run_without_labels.h"
@@ -59,7 +59,7 @@ Options describeOptions()
   options.add_options()("output", textValue("DIR"),
                         "write ROW/sequences/SS/predictions/NNNNNN.label; a later run goes on where this one stops");
   options.add_options()("report", textValue("FILE.json"), "write all figures and what is needed to merge them");
-  options.add_options()("plot", textValue("DIR"), "write charts, and a figure of each sequence's worst scan");
+  options.add_options()("plot", textValue("DIR"), "write charts (by Python's matplotlib), and a figure of each sequence's worst scan");
   options.add_options()("class-table", textValue("FILE"),
                         "YAML file, or the name of a table that ships with the package (default: semantic_kitti)");
   options.add_options()(
@@ -127,11 +127,10 @@ std::size_t terminalWidth()
 }
 
 /// The table goes first, so that a full disk cannot take the figures along.
-void publish(const BenchmarkReport& report, std::optional<AsideFile>& file, const std::string& plot)
+void publish(const BenchmarkReport& report, std::optional<AsideFile>& file)
 {
   printResult(formatBenchmark(report, terminalWidth()));
   if (file) file->save(report.toJsonText());
-  if (!plot.empty()) drawBenchmarkCharts(report, plot);
 }
 
 std::vector<BenchmarkReport> loadReports(const Given& given, const char* option)
@@ -206,26 +205,27 @@ int run(const Given& given)
   const std::string plot = textOf(given, "plot");
   const bool merging = isGiven(given, "merge");
   const BenchmarkSettings settings = merging ? BenchmarkSettings{} : readSettings(given);
-  std::optional<AsideFile> file;
-  if (isGiven(given, "report")) file.emplace(textOf(given, "report"));
   if (!plot.empty()) fs::create_directories(plot);
+  const std::string path = isGiven(given, "report") || plot.empty() ? textOf(given, "report") : plot + "/report.json";
+  std::optional<AsideFile> file;
+  if (!path.empty()) file.emplace(path);
   if (merging)
   {
-    publish(merge(given), file, plot);
+    publish(merge(given), file);
+    if (!plot.empty()) plotReport(path, plot);
     return EXIT_SUCCESS;
   }
 
   const auto table = std::make_shared<const ClassTable>(ClassTable::load(settings.class_table));
   BenchmarkRun benchmark(settings, table);
   noteInterrupts();
-  publish(benchmark.run(), file, plot);
+  publish(benchmark.run(), file);
   if (interrupted() != 0)
-  {
     std::cerr << "panoptic_benchmark: interrupted; the figures are of the scans done by then\n";
-    return 128 + interrupted();
-  }
-  if (!plot.empty()) drawWorstScans(settings, benchmark, table, plot);
-  return EXIT_SUCCESS;
+  else if (!plot.empty())
+    drawWorstScans(settings, benchmark, table, plot);
+  if (!plot.empty()) plotReport(path, plot);
+  return interrupted() == 0 ? EXIT_SUCCESS : 128 + interrupted();
 }
 }  // namespace
 
