@@ -1,13 +1,9 @@
 # The Python package lidar_panoptic_clustering: the extension _core (src/python) and what is Python (python/). In a build
 # folder the Python files are links, so that a change counts at once.
-#
-# catkin generates messages and parameters into a Python package of the same name, with an empty __init__.py wherever
-# there is none yet. One of ours has to lie there before, and catkin must not install its own over it. A setup.py with
-# catkin_python_setup() would do that too, but runs setuptools at installation, and knows no extension made by cmake.
 
 set(python_package_source ${CMAKE_CURRENT_SOURCE_DIR}/python/${PROJECT_NAME})
 
-# Before catkin generates anything: links the Python files into a folder of the build.
+# Links the Python files into a folder of the build.
 function(link_python_package folder)
   file(GLOB files RELATIVE ${python_package_source} CONFIGURE_DEPENDS ${python_package_source}/*.py
        ${python_package_source}/*.pyi ${python_package_source}/py.typed)
@@ -16,6 +12,17 @@ function(link_python_package folder)
     file(CREATE_LINK ${python_package_source}/${file} ${folder}/${file} SYMBOLIC)
   endforeach()
 endfunction()
+
+# Before catkin generates anything: makes one package of what it generates into `generated` (messages, parameters) and
+# of `folder`. catkin writes an empty __init__.py wherever there is none, and installs the whole of `generated`, links
+# too. So all that lies there of ours is an __init__.py, which leads to the folder, and which catkin is told, as by
+# catkin_python_setup(), not to install. (That function would run setuptools at installation and knows no extension made
+# by cmake.)
+macro(relay_python_package generated folder)
+  set(python_package_folder ${folder})
+  configure_file(cmake/python_relay.py.in ${generated}/__init__.py @ONLY)
+  set(${PROJECT_NAME}_CATKIN_PYTHON_SETUP_HAS_PACKAGE_INIT TRUE)
+endmacro()
 
 # Looks for what the extension needs: sets `found`, Python3_INCLUDE_DIRS, pybind11_INCLUDE_DIR and python_suffix.
 macro(find_python_extension found)
@@ -56,4 +63,22 @@ function(add_python_extension folder destination library)
     install(DIRECTORY ${python_package_source}/ DESTINATION ${destination} COMPONENT python FILES_MATCHING
             PATTERN "*.py" PATTERN "*.pyi" PATTERN "py.typed" PATTERN "__pycache__" EXCLUDE)
   endif()
+endfunction()
+
+# The tests of test/python, on the package as it lies in the build.
+function(add_python_tests)
+  execute_process(COMMAND ${Python3_EXECUTABLE} -c "import pytest" RESULT_VARIABLE failed OUTPUT_QUIET ERROR_QUIET)
+  if(failed)
+    message(STATUS "no pytest for ${Python3_EXECUTABLE}: the Python package is not tested")
+    return()
+  endif()
+  if(LIDAR_PANOPTIC_ROS)
+    set(path ${CATKIN_DEVEL_PREFIX}/${CATKIN_GLOBAL_PYTHON_DESTINATION})
+  else()
+    get_filename_component(path ${python_build_folder} DIRECTORY)
+  endif()
+  add_test(NAME python COMMAND ${Python3_EXECUTABLE} -m pytest -q -p no:cacheprovider ${CMAKE_CURRENT_SOURCE_DIR}/test/python)
+  set_tests_properties(
+    python PROPERTIES ENVIRONMENT "PYTHONPATH=${path}:$ENV{PYTHONPATH};PYTHONDONTWRITEBYTECODE=1;\
+LIDAR_PANOPTIC_BENCHMARK=$<TARGET_FILE:panoptic_benchmark>;LIDAR_PANOPTIC_WORKSPACE=$<BOOL:${LIDAR_PANOPTIC_ROS}>")
 endfunction()

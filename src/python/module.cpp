@@ -7,5 +7,7 @@ PYBIND11_MODULE(_core, module)
   module.doc() = "The C++ of lidar_panoptic_clustering; its names are those of the package.";
   module.attr("__version__") = version();
   bindSegmenter(module);
+  bindStreams(module);
+  bindData(module);
   bindBenchmark(module);
 }

@@ -1,5 +1,7 @@
 #include "python/numpy_arrays.h"
 
+#include <limits>
+
 namespace py = pybind11;
 
 namespace lidar_panoptic_clustering
@@ -49,6 +51,15 @@ bool isNative(const py::array& array)
 py::array cast(const py::array& array, const char* type)
 {
   return array.attr("astype")(type).cast<py::array>();
+}
+
+/// Infinity for what is too large.
+double numberOf(const py::object& value)
+{
+  const double number = PyFloat_AsDouble(value.ptr());
+  if (PyErr_Occurred() == nullptr) return number;
+  PyErr_Clear();
+  return std::numeric_limits<double>::infinity();
 }
 
 HeldIds integersOf(const py::object& given, const std::string& what)
@@ -141,10 +152,8 @@ ParameterMap parametersOf(const py::dict& keywords)
       parameters[name] = value.cast<bool>();
     else if (py::isinstance<py::str>(value))
       parameters[name] = value.cast<std::string>();
-    else if (PyIndex_Check(value.ptr()) != 0)
-      parameters[name] = static_cast<double>(py::float_(py::int_(value)));
-    else if (PyNumber_Check(value.ptr()) != 0 && py::hasattr(value, "__float__"))
-      parameters[name] = static_cast<double>(py::float_(value));
+    else if (PyIndex_Check(value.ptr()) != 0 || py::hasattr(value, "__float__"))
+      parameters[name] = numberOf(value);
     else if (py::hasattr(value, "__fspath__"))
       parameters[name] = value.attr("__fspath__")().cast<std::string>();
     else

@@ -180,6 +180,16 @@ void bindSegmenter(py::module& module)
       "The parameters of Segmenter(algorithm): name -> {default, min, max} for numbers, {default, choices} for "
       "text.\n\n"
       "Raises ValueError on an unknown algorithm.");
+  module.def(
+      "survey_parameters",
+      [](const std::string& algorithm)
+      {
+        algorithmParameters(algorithm);  // refuses an unknown name
+        return dictOf(surveyParameters(algorithm));
+      },
+      py::arg("algorithm"),
+      "What makes Segmenter(algorithm) the one of Zhao et al. 2021: no class sizes, no refinement.\n\n"
+      "Raises ValueError on an unknown algorithm.");
   module.def("class_tables", &ClassTable::shippedNames, "The names of the class tables that ship with the package.");
 }
 }  // namespace lidar_panoptic_clustering
