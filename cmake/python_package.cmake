@@ -53,8 +53,7 @@ function(add_python_extension folder destination library)
   add_library(_core MODULE ${sources})
   target_include_directories(_core PRIVATE src)
   target_include_directories(_core SYSTEM PRIVATE ${pybind11_INCLUDE_DIR} ${Python3_INCLUDE_DIRS})
-  target_link_libraries(_core PRIVATE ${PROJECT_NAME} ${PROJECT_NAME}_options Boost::program_options
-                                      nlohmann_json::nlohmann_json Threads::Threads)
+  target_link_libraries(_core PRIVATE ${PROJECT_NAME} ${PROJECT_NAME}_options nlohmann_json::nlohmann_json Threads::Threads)
   set_target_properties(
     _core PROPERTIES PREFIX "" SUFFIX "${python_suffix}" CXX_VISIBILITY_PRESET hidden LIBRARY_OUTPUT_DIRECTORY ${folder}
                      INSTALL_RPATH "$ORIGIN/${library}")

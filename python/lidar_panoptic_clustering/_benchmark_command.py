@@ -40,8 +40,8 @@ def _benchmark(arguments: List[str]) -> int:
     parser = make_parser(NAME, "Quality and time of clustering algorithms on a data set, on all workers of a cluster.")
     parser.add_argument("--report", metavar="FILE.json", help="write all figures, as panoptic_benchmark does")
     parser.add_argument("--plot", metavar="DIR", help="write charts of them; the report too, if --report is not given")
-    given, rest = parser.parse_known_args(arguments)
-    plan, work = make_work(rest, False, given)
+    given = parser.parse_args(arguments)
+    plan, work = make_work(given, label=False)
     if given.plot:
         os.makedirs(given.plot, exist_ok=True)
     path = given.report or (os.path.join(given.plot, "report.json") if given.plot else None)

@@ -1,6 +1,7 @@
 """Runs the parts of a data set on the workers of a Dask cluster: in any order, each at least once, counted once."""
 
 import asyncio
+import itertools
 import os
 import queue
 import signal
@@ -54,9 +55,10 @@ def connect(cluster: Cluster) -> Iterator[Any]:
     """
     try:
         import dask
-        from distributed import Client, LocalCluster
+        import distributed
     except ImportError as error:
         raise ClusterError(f"{MISSING} ({error})") from None
+    dask_distributed: Any = distributed  # which has no types
     if cluster.scheduler is None and cluster.scheduler_file is None:
         os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "error")  # of the workers; what matters comes back as errors
         settings = {
@@ -65,7 +67,7 @@ def connect(cluster: Cluster) -> Iterator[Any]:
             "distributed.admin.tick.limit": "60 s",  # a busy machine is not worth a warning
         }
         with dask.config.set(settings):
-            local = LocalCluster(
+            local = dask_distributed.LocalCluster(
                 n_workers=cluster.workers,
                 threads_per_worker=1,
                 processes=True,
@@ -74,12 +76,14 @@ def connect(cluster: Cluster) -> Iterator[Any]:
                 silence_logs=50,
                 preload="lidar_panoptic_clustering._worker",
             )
-            with local, Client(local) as client:
+            with local, dask_distributed.Client(local) as client:
                 yield client
         return
     where = cluster.scheduler or f"the scheduler of {cluster.scheduler_file}"
     try:
-        client = Client(address=cluster.scheduler, scheduler_file=cluster.scheduler_file, timeout=cluster.wait_s)
+        client = dask_distributed.Client(
+            address=cluster.scheduler, scheduler_file=cluster.scheduler_file, timeout=cluster.wait_s
+        )
     except (OSError, ValueError) as error:
         raise ClusterError(
             f"no Dask scheduler answers at {where} within {cluster.wait_s:g} s ({error or type(error).__name__}); "
@@ -224,10 +228,10 @@ class Run:
 
     def _begin_parts(self, parts: Iterator[Part]) -> None:
         while self._failure is None and len(self._flights) < self._window:
-            part = self._again.pop() if self._again else next(parts, None)
-            if part is None:
+            upcoming = [self._again.pop()] if self._again else list(itertools.islice(parts, 1))
+            if not upcoming:
                 return
-            flight = _Flight(self._order, part)
+            flight = _Flight(self._order, upcoming[0])
             self._order += 1
             self._flights[flight.order] = flight
             self._submit(flight, None)
@@ -307,7 +311,7 @@ class Run:
         part = flight.part
         if not self._keep_going:
             self._fail(flight.order, reason)
-        elif part.end - part.begin > 1 and "--track" not in self._work.arguments:
+        elif part.end - part.begin > 1 and not self._work.track:
             progress.note(f"divided: {reason}")
             self._again.extend(reversed(halves(part)))
         else:
@@ -342,7 +346,7 @@ class Run:
     def _patience(self) -> float:
         if self._patience_s is not None:
             return self._patience_s
-        if "--track" in self._work.arguments:  # a task may be minutes, and the first is no measure of the next
+        if self._work.track:  # a task may be minutes, and the first is no measure of the next
             return 86400.0 if not self._durations else max(LEAST_PATIENCE_S, 20.0 * max(self._durations))
         return max(LEAST_PATIENCE_S, 20.0 * statistics.median(self._durations or [0.0]))
 

@@ -19,12 +19,11 @@ def _label(arguments: List[str]) -> int:
         "and renamed. A later run with the same options goes on where this one stopped.",
     )
     parser.add_argument("--algorithm", metavar="A", help="which one (default: birds_eye)")
-    given, rest = parser.parse_known_args(arguments)
-    if not any(argument.split("=")[0] == "--algorithms" for argument in rest):
-        rest += ["--algorithms", given.algorithm or "birds_eye"]
-    elif given.algorithm:
+    given = parser.parse_args(arguments)
+    if given.algorithm and given.algorithms:
         raise ValueError("--algorithm and --algorithms exclude each other")
-    plan, work = make_work(rest, True, given)
+    given.algorithms = given.algorithms or given.algorithm or "birds_eye"
+    plan, work = make_work(given, label=True)
     ended = run_parts(NAME, plan, work, given, lambda _: None, lambda *_: None)
     print(f"{ended.used} scans labelled, {ended.resumed} of them by a run before; {ended.skipped} skipped")
     return exit_status(NAME, ended)

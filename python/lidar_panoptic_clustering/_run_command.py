@@ -10,22 +10,33 @@ from ._progress import Progress
 from ._tasks import Part, Work, package_version
 
 SCANS_A_TASK = 25
-FOLDERS = ("--dataset", "--semantics", "--output")
-TABLES = ("--class-table", "--label-table")
+FOLDERS = ("dataset", "semantics", "output")
+TABLES = ("class-table", "label-table")
 
 
 def make_parser(name: str, description: str) -> argparse.ArgumentParser:
-    """The options of a run on a cluster; those of the plan follow in the help."""
+    """The options of panoptic_benchmark, and those of a cluster."""
     from . import _core
 
     parser = argparse.ArgumentParser(
         prog=f"python3 -m lidar_panoptic_clustering {name}",
         description=description,
-        epilog=_core.BenchmarkPlan.help(),
         formatter_class=argparse.RawDescriptionHelpFormatter,
         allow_abbrev=False,
         usage="%(prog)s --dataset DIR [options]",
     )
+    plan = parser.add_argument_group("What to run on, and with")
+    for option, kind, value, default, text in _core.BenchmarkPlan.options():
+        settings: Dict[str, Any] = {"help": text.replace("%", "%%")}
+        if kind == "flag":
+            settings["action"] = "store_true"
+        else:
+            settings["metavar"] = value
+        if kind == "list":
+            settings.update(action="extend", nargs="+")
+        if kind == "number":
+            settings["help"] += f" (default: {default})"
+        plan.add_argument(f"--{option}", **settings)
     cluster = parser.add_argument_group("Where to run")
     cluster.add_argument("--scheduler", metavar="tcp://HOST:8786", help="of a Dask cluster; else processes here")
     cluster.add_argument("--scheduler-file", metavar="FILE", help="as 'dask scheduler' writes it, instead of that")
@@ -148,28 +159,20 @@ def run_parts(
     return Ended(outcome, signal, numbers["used"], numbers["resumed"], numbers["skipped"])
 
 
-def make_work(arguments: List[str], label: bool, given: argparse.Namespace) -> Tuple[Any, Work]:
+def make_work(given: argparse.Namespace, label: bool) -> Tuple[Any, Work]:
     """The plan of the options. For workers elsewhere all paths are made absolute, to mean the same to each."""
     from . import _core
 
-    if given.scheduler or given.scheduler_file:
-        arguments = absolute_paths(arguments)
-    return _core.BenchmarkPlan(arguments, label), Work(tuple(arguments), label, package_version())
-
-
-def absolute_paths(arguments: List[str]) -> List[str]:
-    """Those of the options that name a folder or a file; a table that ships with the package keeps its name."""
-    result: List[str] = []
-    option = ""
-    for argument in arguments:
-        before, equals, value = argument.partition("=")
-        name, path = (before, value) if argument.startswith("--") and equals else (option, argument)
-        if name in FOLDERS or (name in TABLES and os.path.isfile(path)):
-            path = os.path.abspath(path)
-            argument = f"{name}={path}" if equals and argument.startswith("--") else path
-        result.append(argument)
-        option = argument if argument.startswith("--") and not equals else ""
-    return result
+    elsewhere = given.scheduler or given.scheduler_file
+    options: Dict[str, Tuple[str, ...]] = {}
+    for name, kind, *_ in _core.BenchmarkPlan.options():
+        value = getattr(given, name.replace("-", "_"))
+        if value is None or value is False:
+            continue
+        if elsewhere and (name in FOLDERS or (name in TABLES and os.path.isfile(value))):
+            value = os.path.abspath(value)
+        options[name] = () if kind == "flag" else tuple(value) if kind == "list" else (value,)
+    return _core.BenchmarkPlan(options, label), Work(tuple(options.items()), label, package_version())
 
 
 def exit_status(name: str, ended: Ended) -> int:

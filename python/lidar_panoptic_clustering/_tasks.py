@@ -9,12 +9,17 @@ _cache = threading.local()
 class Work(NamedTuple):
     """What all tasks of a run have in common."""
 
-    arguments: Tuple[str, ...]
-    """Options of panoptic_benchmark."""
+    options: Tuple[Tuple[str, Tuple[str, ...]], ...]
+    """Of panoptic_benchmark: names and values."""
     label: bool
     """Predictions alone."""
     version: str
     """Of this package where the run was started."""
+
+    @property
+    def track(self) -> bool:
+        """Whether a part is a whole sequence."""
+        return "track" in dict(self.options)
 
 
 class Part(NamedTuple):
@@ -52,7 +57,7 @@ def _benchmark_of(work: Work, sequence: str) -> Any:
     known: Optional[Tuple[Work, str, Any]] = getattr(_cache, "benchmark", None)
     if known is None or known[:2] != (work, sequence):
         _cache.benchmark = None  # the memory of the one before, first
-        plan = _core.BenchmarkPlan(list(work.arguments), work.label)
+        plan = _core.BenchmarkPlan(dict(work.options), work.label)
         _cache.benchmark = known = (work, sequence, _core.SequenceBenchmark(plan, sequence))
     return known[2]
 

@@ -3,6 +3,8 @@
 
 #include <pybind11/stl.h>
 
+#include <tuple>
+
 namespace py = pybind11;
 
 namespace lidar_panoptic_clustering
@@ -29,6 +31,16 @@ py::dict run(SequenceBenchmark& benchmark, std::size_t begin, std::size_t end)
   return toDict(result);
 }
 
+/// (name, kind, value's name, default, help) of each.
+std::vector<std::tuple<std::string, std::string, std::string, int, std::string>> options()
+{
+  static constexpr const char* kKinds[] = {"flag", "text", "list", "number"};
+  std::vector<std::tuple<std::string, std::string, std::string, int, std::string>> result;
+  for (const BenchmarkOption& one : kBenchmarkOptions)
+    result.emplace_back(one.name, kKinds[static_cast<int>(one.kind)], one.value, one.number, one.text);
+  return result;
+}
+
 std::vector<std::string> rowsOf(const BenchmarkPlan& plan)
 {
   std::vector<std::string> names;
@@ -41,10 +53,11 @@ void bindBenchmark(py::module& module)
 {
   using Released = py::call_guard<py::gil_scoped_release>;
   py::class_<BenchmarkPlan>(module, "BenchmarkPlan", "What panoptic_benchmark's options ask for; what workers agree on.")
-      .def(py::init<const std::vector<std::string>&, bool>(), py::arg("arguments"), py::arg("label") = false, Released(),
-           "arguments: as on a command line. label: predictions of one algorithm into --output, no evaluation.\n"
+      .def(py::init<const GivenOptions&, bool>(), py::arg("options"), py::arg("label") = false, Released(),
+           "options: values by name, of a flag none. label: predictions of one algorithm into --output, no evaluation.\n"
            "Raises ValueError naming the option, RuntimeError where there is no such data set.")
-      .def_static("help", &BenchmarkPlan::help, "The options, as --help prints them.")
+      .def_static("options", &options, "(name, kind, value's name, default, help) of each option; kind is flag, text,\n"
+                                       "list or number.")
       .def_property_readonly("sequences", &BenchmarkPlan::sequences, "Names, in the order of the run.")
       .def_property_readonly("rows", &rowsOf, "Names of the table's rows.")
       .def_property_readonly("track", [](const BenchmarkPlan& plan) { return plan.settings().track; })

@@ -3,7 +3,6 @@
 #include <algorithm>
 #include <filesystem>
 #include <set>
-#include <sstream>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -11,13 +10,6 @@ namespace lidar_panoptic_clustering
 namespace fs = std::filesystem;
 namespace
 {
-Options planOptions()
-{
-  Options options("What to run on, and with", 110, 60);
-  addBenchmarkOptions(options);
-  return options;
-}
-
 /// Those of the data set that have classes to cluster by, and with `evaluate` ground truth to compare with.
 std::vector<std::string> sequencesOf(const BenchmarkSettings& settings)
 {
@@ -43,8 +35,7 @@ BenchmarkSettings ofSequence(BenchmarkSettings settings, const std::string& sequ
 }
 }  // namespace
 
-BenchmarkPlan::BenchmarkPlan(const std::vector<std::string>& arguments, bool label)
-    : settings_(readBenchmarkOptions(readCommandLine(planOptions(), arguments)))
+BenchmarkPlan::BenchmarkPlan(const GivenOptions& options, bool label) : settings_(readBenchmarkOptions(options))
 {
   settings_.quiet = true;
   settings_.evaluate = !label;
@@ -58,13 +49,6 @@ BenchmarkPlan::BenchmarkPlan(const std::vector<std::string>& arguments, bool lab
   std::set<std::string> seen;
   for (const std::string& name : sequences_)
     if (!seen.insert(name).second) throw std::invalid_argument("sequence " + name + " is given twice");
-}
-
-std::string BenchmarkPlan::help()
-{
-  std::ostringstream text;
-  text << planOptions();
-  return text.str();
 }
 
 BenchmarkReport BenchmarkPlan::emptyReport() const

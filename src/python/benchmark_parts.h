@@ -12,16 +12,13 @@
 
 namespace lidar_panoptic_clustering
 {
-/// What panoptic_benchmark's options, as on a command line, ask for: what the processes of a cluster agree on.
+/// What panoptic_benchmark's options ask for: what the processes of a cluster agree on.
 class BenchmarkPlan
 {
 public:
   /// `label`: predictions of one algorithm right into --output, without any evaluation. Throws std::invalid_argument
   /// naming the option, and std::runtime_error where there is no such data set.
-  BenchmarkPlan(const std::vector<std::string>& arguments, bool label);
-
-  /// The options, as --help prints them.
-  static std::string help();
+  BenchmarkPlan(const GivenOptions& options, bool label);
 
   const BenchmarkSettings& settings() const { return settings_; }
   const std::shared_ptr<const ClassTable>& table() const { return table_; }

@@ -35,7 +35,14 @@ Options)";
 Options describeOptions()
 {
   Options options = describeProgram(kUsage);
-  addBenchmarkOptions(options);
+  for (const BenchmarkOption& one : kBenchmarkOptions)
+    switch (one.kind)
+    {
+      case OptionKind::kFlag: options.add_options()(one.name, one.text); break;
+      case OptionKind::kText: options.add_options()(one.name, textValue(one.value), one.text); break;
+      case OptionKind::kList: options.add_options()(one.name, textValues(one.value)->composing(), one.text); break;
+      case OptionKind::kNumber: options.add_options()(one.name, numberValue(one.number), one.text); break;
+    }
   options.add_options()("jobs", numberValue(1),
                         "threads, each on scans of its own; the quality does not depend on it, but times are best "
                         "taken with one");
@@ -65,7 +72,16 @@ void readShard(const std::string& text, BenchmarkSettings& settings)
 
 BenchmarkSettings readSettings(const Given& given)
 {
-  BenchmarkSettings settings = readBenchmarkOptions(given);
+  GivenOptions options;
+  for (const BenchmarkOption& one : kBenchmarkOptions)
+  {
+    if (!isGiven(given, one.name)) continue;
+    std::vector<std::string>& values = options[one.name];
+    if (one.kind == OptionKind::kText) values = {textOf(given, one.name)};
+    if (one.kind == OptionKind::kList) values = listOf(given, one.name);
+    if (one.kind == OptionKind::kNumber) values = {std::to_string(given[one.name].as<int>())};
+  }
+  BenchmarkSettings settings = readBenchmarkOptions(options);
   settings.jobs = numberOf(given, "jobs", 1, 1024);
   readShard(textOf(given, "shard"), settings);
   if (settings.track && settings.shards > 1)

@@ -102,27 +102,21 @@ inline void printResult(const std::string& text)
   if (!std::cout) throw std::runtime_error("cannot write to standard output");
 }
 
-/// Reads a command line without the program's name. Options cannot be abbreviated: a later one must not change what a
-/// script means. Throws what program_options does.
-inline Given readCommandLine(const Options& options, const std::vector<std::string>& arguments)
-{
-  namespace po = boost::program_options;
-  const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
-  const po::positional_options_description none;
-  Given given;
-  po::store(po::command_line_parser(arguments).options(options).positional(none).style(style).run(), given);
-  return given;
-}
-
 /// The whole of main(): reads the options, prints --help, else runs `run`. Its exit status is run's; 1 after an error,
 /// which is printed to stderr behind the program's `name`; 128 and the signal's number after an interrupt that ended
 /// in an error.
+///
+/// Options cannot be abbreviated: a later one must not change what a script means.
 template <class Run>
 int runProgram(const char* name, int argc, char** argv, const Options& options, Run run)
 {
+  namespace po = boost::program_options;
   try
   {
-    const Given given = readCommandLine(options, {argv + 1, argv + argc});
+    Given given;
+    const int style = po::command_line_style::default_style & ~po::command_line_style::allow_guessing;
+    const po::positional_options_description none;
+    po::store(po::command_line_parser(argc, argv).options(options).positional(none).style(style).run(), given);
     if (!isGiven(given, "help")) return run(given);
     std::cout << options;
     return EXIT_SUCCESS;
