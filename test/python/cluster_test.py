@@ -130,26 +130,33 @@ def test_recorded_scans(recorded, tmp_path, benchmark):
 
 
 def slow(data):
-    """Options of a run of some seconds, in tasks of a few scans: columns and rows cost time."""
-    return ['--dataset', data, '--columns', 16384, '--workers', 2, '--scans-per-task', 2]
+    """Options of a run of some seconds, in tasks of a few scans: columns cost time."""
+    return [*slow_scans(data), '--workers', 2, '--scans-per-task', 2]
+
+
+def slow_scans(data):
+    """Of both programs."""
+    return ['--dataset', data, '--columns', 8192, '--algorithms', 'depth,birds_eye']
 
 
 def test_a_killed_worker_costs_nothing(data, tmp_path, benchmark):
-    benchmark('--dataset', data, '--columns', 16384, '--report', tmp_path / 'cpp.json')
+    benchmark(*slow_scans(data), '--report', tmp_path / 'cpp.json')
     process = start('benchmark', *slow(data), '--report', 'r.json', '--output', 'out', cwd=tmp_path)
     wait_for(lambda: len(files(tmp_path / 'out')) > 20)
     os.kill(workers_of(process)[0], signal.SIGKILL)
+    assert process.poll() is None, 'it was killed in mid-run'
     out, err = process.communicate(timeout=300)
     assert process.returncode == 0, err
     assert quality(tmp_path / 'r.json') == quality(tmp_path / 'cpp.json')
 
 
 def test_a_worker_that_never_comes_back(data, tmp_path, benchmark):
-    benchmark('--dataset', data, '--columns', 16384, '--report', tmp_path / 'cpp.json')
+    benchmark(*slow_scans(data), '--report', tmp_path / 'cpp.json')
     process = start('benchmark', *slow(data), '--report', 'r.json', '--output', 'out', '--patience', 6, cwd=tmp_path)
     wait_for(lambda: len(files(tmp_path / 'out')) > 20)
     stopped = workers_of(process)[0]
     os.kill(stopped, signal.SIGSTOP)
+    assert process.poll() is None
     try:
         out, err = process.communicate(timeout=300)
     finally:
@@ -164,7 +171,7 @@ def test_a_worker_that_never_comes_back(data, tmp_path, benchmark):
 
 def test_ctrl_c_ends_with_the_figures_so_far(data, tmp_path):
     process = start('benchmark', *slow(data), '--report', 'r.json', '--output', 'out', cwd=tmp_path)
-    wait_for(lambda: len(files(tmp_path / 'out')) > 60)
+    wait_for(lambda: len(files(tmp_path / 'out')) > 20)
     os.killpg(process.pid, signal.SIGINT)  # as a terminal does: to every process
     out, err = process.communicate(timeout=300)
     assert process.returncode == 130, err
@@ -326,9 +333,8 @@ class TestOfAScheduler:
     def test_a_scheduler_that_dies(self, data, tmp_path, scheduler):
         worker = self.worker(scheduler[1], tmp_path)
         try:
-            process = start('benchmark', '--dataset', data, '--columns', 16384, '--scans-per-task', 2, '--output', 'out',
-                            '--scheduler-file', scheduler[1], '--patience', 5, '--report', 'r.json', cwd=tmp_path)
-            wait_for(lambda: len(files(tmp_path / 'out')) > 60)
+            process = start('benchmark', *slow_scans(data), '--scans-per-task', 2, '--output', 'out', '--scheduler-file', scheduler[1], '--patience', 5, '--report', 'r.json', cwd=tmp_path)
+            wait_for(lambda: len(files(tmp_path / 'out')) > 20)
             scheduler[0].kill()
             out, err = process.communicate(timeout=120)
         finally:
