@@ -19,19 +19,22 @@ class _ReportFile:
     """Opened aside before the run, so that a path that cannot be written costs no figures; renamed when saved."""
 
     def __init__(self, path: str) -> None:
-        self.path, self._part = path, path + ".part"
+        special = os.path.exists(path) and not os.path.isfile(path)  # a pipe, /dev/stdout: written to as it is
+        self.path, self._part = path, path if special else f"{path}.{os.getpid()}.part"
         self._file = open(self._part, "wb")
 
     def save(self, text: bytes) -> None:
         self._file.write(text)
         self._file.close()
-        os.replace(self._part, self.path)
+        if self._part != self.path:
+            os.replace(self._part, self.path)
 
     def discard(self) -> None:
         """Unless it was saved."""
         if not self._file.closed:
             self._file.close()
-            os.remove(self._part)
+            if self._part != self.path:
+                os.remove(self._part)
 
 
 def _benchmark(arguments: List[str]) -> int:

@@ -21,6 +21,7 @@ MISSING = (
 )
 LOCAL_TTL = "30 s"  # after which a worker of a local cluster that says nothing is given up
 AHEAD = 3  # tasks a worker's thread has waiting, so that it never waits for the driver
+LEAST_AHEAD = 12  # and what all have together, so that tasks go out by several
 COPIES = 3  # times a part is begun before it is given up
 LEAST_PATIENCE_S = 60.0
 POLL_S = 0.2
@@ -214,7 +215,7 @@ class Run:
         self._looked = now
         status, threads = self._client.status, sum(self._threads().values())
         if threads > 0:
-            self._seen_workers, self._window = now, AHEAD * threads
+            self._seen_workers, self._window = now, max(AHEAD * threads, LEAST_AHEAD)
         elif now - self._seen_workers > self._patience():
             what = "no worker is left" if status == "running" else f"the scheduler is gone (connection {status})"
             self._fail(-1, f"{what} since {now - self._seen_workers:.0f} s")
@@ -227,26 +228,35 @@ class Run:
             return {}
 
     def _begin_parts(self, parts: Iterator[Part]) -> None:
-        while self._failure is None and len(self._flights) < self._window:
+        """Several at a time, which costs the scheduler little more than one."""
+        if self._failure is not None or 4 * len(self._flights) > 3 * self._window:
+            return
+        begun = []
+        while len(self._flights) < self._window:
             upcoming = [self._again.pop()] if self._again else list(itertools.islice(parts, 1))
             if not upcoming:
-                return
+                break
             flight = _Flight(self._order, upcoming[0])
             self._order += 1
             self._flights[flight.order] = flight
-            self._submit(flight, None)
+            begun.append(flight)
+        if begun:
+            self._submit(begun, None)
 
-    def _submit(self, flight: _Flight, workers: Optional[List[str]]) -> None:
-        flight.begun += 1
-        flight.since = time.monotonic()
-        part = flight.part
-        key = f"{self._name}-{part.sequence}:{part.begin}-{part.end - 1}-{self._id}-{flight.order}-{flight.begun}"
-        future = self._client.submit(
-            run_part, self._work, part, key=key, pure=False, workers=workers, priority=-flight.order
+    def _submit(self, flights: List[_Flight], workers: Optional[List[str]]) -> None:
+        keys = []
+        for flight in flights:
+            flight.begun += 1
+            flight.since = time.monotonic()
+            name = f"{self._name}-{flight.part.sequence}:{flight.part.begin}-{flight.part.end - 1}"
+            keys.append(f"{name}-{self._id}-{flight.order}-{flight.begun}")
+        futures = self._client.map(
+            run_part, [self._work] * len(flights), [flight.part for flight in flights], key=keys, pure=False,
+            workers=workers, priority=-flights[0].order,
         )
-        flight.futures[key] = future
-        order = flight.order
-        future.add_done_callback(lambda _: self._ended.put((order, key)))
+        for flight, key, future in zip(flights, keys, futures):
+            flight.futures[key] = future
+            future.add_done_callback(lambda _, order=flight.order, key=key: self._ended.put((order, key)))
 
     def _collect(self, progress: Progress) -> None:
         ended: List[Tuple[int, str]] = []
@@ -256,31 +266,40 @@ class Run:
                 ended.append(self._ended.get_nowait())
         except queue.Empty:
             pass
+        finished: Dict[int, Any] = {}
         for order, key in ended:
             flight = self._flights.get(order)
             future = flight.futures.get(key) if flight else None
             if flight is None or future is None:
                 continue  # a copy of a part that is done
             if future.status == "finished":
-                self._finish(flight, future, progress)
+                finished[order] = future
             elif future.status == "error":
                 self._judge(flight, key, future, progress)
             else:
                 self._fail(-1, f"the scheduler is gone, or gave up a task ({future.status}: {key})")
+        self._finish(finished, progress)
 
-    def _finish(self, flight: _Flight, future: Any, progress: Progress) -> None:
+    def _finish(self, finished: Dict[int, Any], progress: Progress) -> None:
+        """Fetches results, several at a time, and has them counted."""
+        if not finished:
+            return
         try:
-            result = future.result()
+            results = self._client.gather(list(finished.values()))
         except (OSError, asyncio.CancelledError, CancelledError) as error:
             self._fail(-1, f"the scheduler is gone ({type(error).__name__} {error})")
             return
-        self._durations = self._durations[-99:] + [time.monotonic() - flight.since]
-        self._drop(flight)
-        for scan, reason in result["skipped"]:
-            progress.note(f"skipped {scan}: {reason}")
-            self._skip(scan, reason)
-        self._take(result)
-        progress.step(flight.part.end - flight.part.begin)
+        for order, result in zip(finished, results):
+            flight = self._flights.get(order)
+            if flight is None:
+                continue
+            self._durations = self._durations[-99:] + [time.monotonic() - flight.since]
+            self._drop(flight)
+            for scan, reason in result["skipped"]:
+                progress.note(f"skipped {scan}: {reason}")
+                self._skip(scan, reason)
+            self._take(result)
+            progress.step(flight.part.end - flight.part.begin)
 
     def _drop(self, flight: _Flight) -> None:
         del self._flights[flight.order]
@@ -341,7 +360,7 @@ class Run:
                 f"{describe_part(flight.part)}: begun on another worker, {', '.join(sorted(holders))} has not ended it "
                 f"after {patience:.0f} s"
             )
-            self._submit(flight, sorted(workers - holders))
+            self._submit([flight], sorted(workers - holders))
 
     def _patience(self) -> float:
         if self._patience_s is not None:

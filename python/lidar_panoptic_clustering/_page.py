@@ -140,7 +140,7 @@ class Page:
         """Aside and renamed."""
         with self._style(STYLE):
             self._lay_out()
-            part = f"{path}.part"
+            part = f"{path}.{os.getpid()}.part"
             metadata = {"Date": None} if kind == "svg" else {"Software": None}
             try:
                 self.figure.savefig(part, format=kind, dpi=DPI, metadata=metadata)
