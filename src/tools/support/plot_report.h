@@ -24,7 +24,7 @@ inline std::string pythonFolder()
   for (const char* place : {"../python3/dist-packages", "../python", "../lib/python3/dist-packages"})
   {
     const auto folder = (program.parent_path() / place).lexically_normal();
-    if (std::filesystem::exists(folder / "lidar_panoptic_clustering" / "plot.py", error)) return folder.string();
+    if (std::filesystem::exists(folder / "lidar_panoptic_clustering" / "__init__.py", error)) return folder.string();
   }
   return "";
 }
