@@ -1,6 +1,7 @@
 """To a Dask cluster: one that is there, or processes of this machine."""
 
 import os
+import re
 import time
 from contextlib import contextmanager
 from typing import Any, Iterator, NamedTuple, Optional
@@ -13,6 +14,7 @@ MISSING = (
 )
 LOCAL_TTL = "30 s"  # after which a worker of a local cluster that says nothing is given up
 POLL_S = 0.2
+LEAST_VERSION = [2022, 12]
 
 
 class ClusterError(RuntimeError):
@@ -47,6 +49,8 @@ def connect(cluster: Cluster) -> Iterator[Any]:
     except ImportError as error:
         raise ClusterError(f"{MISSING} ({error})") from None
     dask_distributed: Any = distributed  # which has no types
+    if [int(number) for number in re.findall(r"\d+", dask_distributed.__version__)[:2]] < LEAST_VERSION:
+        raise ClusterError(f"distributed is {dask_distributed.__version__}, expected 2022.12 or newer")
     if cluster.scheduler is None and cluster.scheduler_file is None:
         os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "error")  # of the workers; what matters comes back as errors
         settings = {
