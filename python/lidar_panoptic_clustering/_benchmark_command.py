@@ -1,5 +1,6 @@
 """The command ``benchmark``: panoptic_benchmark on all workers of a cluster."""
 
+import contextlib
 import os
 import shutil
 import sys
@@ -69,5 +70,6 @@ def _benchmark(arguments: List[str]) -> int:
     if given.plot and path and os.path.exists(path) and status != 1:
         from ._plot_command import main as plot
 
-        status = plot(["--output", given.plot, path]) or status
+        with contextlib.redirect_stdout(sys.stderr):  # the table alone goes to stdout
+            status = plot(["--output", given.plot, path]) or status
     return status

@@ -2,127 +2,22 @@
 
 import asyncio
 import itertools
-import os
 import queue
-import signal
 import statistics
 import time
 import uuid
 from concurrent.futures import CancelledError
-from contextlib import contextmanager
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
+from ._connect import POLL_S, import_problem
 from ._progress import Progress
-from ._tasks import Part, VersionMismatch, Work, describe_part, halves, package_version, run_part
+from ._tasks import Part, VersionMismatch, Work, describe_part, halves, run_part
 
-MISSING = (
-    "a cluster needs Dask's 'distributed': apt-get install python3-distributed, or pip install distributed "
-    "(panoptic_benchmark does the same on one machine without it)"
-)
-LOCAL_TTL = "30 s"  # after which a worker of a local cluster that says nothing is given up
 AHEAD = 3  # tasks a worker's thread has waiting, so that it never waits for the driver
 LEAST_AHEAD = 12  # and what all have together, so that tasks go out by several
 COPIES = 3  # times a part is begun before it is given up
 LEAST_PATIENCE_S = 60.0
-POLL_S = 0.2
 WORKERS_EVERY_S = 2.0
-
-
-class ClusterError(RuntimeError):
-    """What ended a run, with what to do about it."""
-
-
-class Cluster(NamedTuple):
-    """Where to run."""
-
-    scheduler: Optional[str]
-    """Address, ``tcp://head:8786``; none for a cluster of this machine's processes."""
-    scheduler_file: Optional[str]
-    """A file that ``dask scheduler --scheduler-file`` wrote, instead of the address."""
-    workers: int
-    """Processes of the local cluster."""
-    dashboard: Optional[str]
-    """Address of the local cluster's dashboard, ``:8787``."""
-    wait_s: float
-    """How long a scheduler, or a first worker, is waited for."""
-
-
-@contextmanager
-def connect(cluster: Cluster) -> Iterator[Any]:
-    """A ``distributed.Client``; a local cluster ends with it.
-
-    Raises:
-        ClusterError: where there is no Dask, no scheduler or no worker, or a worker is of another version.
-    """
-    try:
-        import dask
-        import distributed
-    except ImportError as error:
-        raise ClusterError(f"{MISSING} ({error})") from None
-    dask_distributed: Any = distributed  # which has no types
-    if cluster.scheduler is None and cluster.scheduler_file is None:
-        os.environ.setdefault("DASK_LOGGING__DISTRIBUTED", "error")  # of the workers; what matters comes back as errors
-        settings = {
-            "distributed.scheduler.worker-ttl": LOCAL_TTL,
-            "distributed.worker.multiprocessing-method": "spawn",
-            "distributed.admin.tick.limit": "60 s",  # a busy machine is not worth a warning
-        }
-        with dask.config.set(settings):
-            local = dask_distributed.LocalCluster(
-                n_workers=cluster.workers,
-                threads_per_worker=1,
-                processes=True,
-                memory_limit=0,
-                dashboard_address=cluster.dashboard,
-                silence_logs=50,
-                preload="lidar_panoptic_clustering._worker",
-            )
-            with local, dask_distributed.Client(local) as client:
-                yield client
-        return
-    where = cluster.scheduler or f"the scheduler of {cluster.scheduler_file}"
-    try:
-        client = dask_distributed.Client(
-            address=cluster.scheduler, scheduler_file=cluster.scheduler_file, timeout=cluster.wait_s
-        )
-    except (OSError, ValueError) as error:
-        raise ClusterError(
-            f"no Dask scheduler answers at {where} within {cluster.wait_s:g} s ({error or type(error).__name__}); "
-            "one is started by 'dask scheduler' (before Dask 2022: dask-scheduler)"
-        ) from None
-    with client:
-        require_workers(client, cluster.wait_s)
-        yield client
-
-
-def require_workers(client: Any, wait_s: float) -> None:
-    """Waits for a first worker and looks at what all that are there run.
-
-    Raises:
-        ClusterError: where none comes, or one has not this package, or another version of it.
-    """
-    begin = time.monotonic()
-    while not client.nthreads():
-        if time.monotonic() - begin > wait_s:
-            raise ClusterError(
-                f"the scheduler at {client.scheduler.address} has no worker after {wait_s:g} s; one is started by "
-                f"'dask worker {client.scheduler.address}' (before Dask 2022: dask-worker)"
-            )
-        time.sleep(POLL_S)
-    expected = package_version()
-    found = client.run(package_version, on_error="return")
-    wrong = {worker: version for worker, version in found.items() if version != expected}
-    if wrong:
-        worker, version = sorted(wrong.items())[0]
-        raise ClusterError(
-            f"{len(wrong)} of {len(found)} workers cannot take part; {worker}: "
-            + (_import_problem(version) if isinstance(version, Exception) else f"lidar_panoptic_clustering {version}")
-            + f", expected lidar_panoptic_clustering {expected} as here"
-        )
-
-
-def _import_problem(error: BaseException) -> str:
-    return f"it cannot load this package ({type(error).__name__}: {error})"
 
 
 class Outcome(NamedTuple):
@@ -319,7 +214,7 @@ class Run:
         elif isinstance(error, VersionMismatch):
             self._fail(flight.order, f"a worker cannot take part: {error}")
         elif isinstance(error, ImportError):
-            self._fail(flight.order, f"a worker cannot take part: {_import_problem(error)}")
+            self._fail(flight.order, f"a worker cannot take part: {import_problem(error)}")
         else:
             flight.futures.pop(key)
             self._drop(flight)
@@ -372,20 +267,3 @@ class Run:
     def _fail(self, order: int, reason: str) -> None:
         if self._failure is None or order < self._failure[0]:
             self._failure = (order, reason)
-
-
-@contextmanager
-def noted_signals() -> Iterator[Callable[[], int]]:
-    """SIGINT and SIGTERM are only noted, each once; the function returns which one, or 0."""
-    received: List[int] = []
-
-    def note(number: int, _: Any) -> None:
-        received.append(number)
-        signal.signal(number, signal.SIG_DFL)  # a second one ends the program at once
-
-    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
-    try:
-        yield lambda: received[0] if received else 0
-    finally:
-        for number, handler in before.items():
-            signal.signal(number, handler)

@@ -141,7 +141,7 @@ class Page:
         with self._style(STYLE):
             self._lay_out()
             part = f"{path}.{os.getpid()}.part"
-            metadata = {"Date": None} if kind == "svg" else {"Software": None}
+            metadata = {"Date": None} if kind == "svg" else None
             try:
                 self.figure.savefig(part, format=kind, dpi=DPI, metadata=metadata)
                 os.replace(part, path)

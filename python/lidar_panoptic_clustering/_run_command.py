@@ -2,10 +2,13 @@
 
 import argparse
 import os
+import signal
 import sys
+from contextlib import contextmanager
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Tuple
 
-from ._cluster import Cluster, ClusterError, Outcome, Run, connect, noted_signals
+from ._cluster import Outcome, Run
+from ._connect import Cluster, ClusterError, connect
 from ._progress import Progress
 from ._tasks import Part, Work, package_version
 
@@ -107,6 +110,23 @@ def parts_of(plan: Any, scans: Dict[str, int], scans_a_task: int) -> Iterator[Pa
             yield Part(sequence, begin, min(begin + step, count), benchmark.scan_name(begin))
 
 
+@contextmanager
+def noted_signals() -> Iterator[Callable[[], int]]:
+    """SIGINT and SIGTERM are only noted, each once; the function returns which one, or 0."""
+    received: List[int] = []
+
+    def note(number: int, _: Any) -> None:
+        received.append(number)
+        signal.signal(number, signal.SIG_DFL)  # a second one ends the program at once
+
+    before = {number: signal.signal(number, note) for number in (signal.SIGINT, signal.SIGTERM)}
+    try:
+        yield lambda: received[0] if received else 0
+    finally:
+        for number, handler in before.items():
+            signal.signal(number, handler)
+
+
 class Ended(NamedTuple):
     """How a command's run ended."""
 
@@ -153,10 +173,10 @@ def run_parts(
         parts = parts_of(plan, counts.scans, given.scans_per_task)
         outcome = run.run(parts, progress, lambda: received() != 0)
         progress.finish()
-        signal = received()
-    if signal == 0 and outcome.failure is None and numbers["used"] == 0:
+        number = received()
+    if number == 0 and outcome.failure is None and numbers["used"] == 0:
         outcome = Outcome(False, False, f"none of the {sum(counts.scans.values())} scans could be used")
-    return Ended(outcome, signal, numbers["used"], numbers["resumed"], numbers["skipped"])
+    return Ended(outcome, number, numbers["used"], numbers["resumed"], numbers["skipped"])
 
 
 def make_work(given: argparse.Namespace, label: bool) -> Tuple[Any, Work]:

@@ -52,12 +52,15 @@ std::vector<std::string> rowsOf(const BenchmarkPlan& plan)
 void bindBenchmark(py::module& module)
 {
   using Released = py::call_guard<py::gil_scoped_release>;
-  py::class_<BenchmarkPlan>(module, "BenchmarkPlan", "What panoptic_benchmark's options ask for; what workers agree on.")
-      .def(py::init<const GivenOptions&, bool>(), py::arg("options"), py::arg("label") = false, Released(),
-           "options: values by name, of a flag none. label: predictions of one algorithm into --output, no evaluation.\n"
-           "Raises ValueError naming the option, RuntimeError where there is no such data set.")
-      .def_static("options", &options, "(name, kind, value's name, default, help) of each option; kind is flag, text,\n"
-                                       "list or number.")
+  py::class_<BenchmarkPlan>(module, "BenchmarkPlan",
+                            "What panoptic_benchmark's options ask for; what workers agree on.")
+      .def(
+          py::init<const GivenOptions&, bool>(), py::arg("options"), py::arg("label") = false, Released(),
+          "options: values by name, of a flag none. label: predictions of one algorithm into --output, no evaluation.\n"
+          "Raises ValueError naming the option, RuntimeError where there is no such data set.")
+      .def_static("options", &options,
+                  "(name, kind, value's name, default, help) of each option; kind is flag, text,\n"
+                  "list or number.")
       .def_property_readonly("sequences", &BenchmarkPlan::sequences, "Names, in the order of the run.")
       .def_property_readonly("rows", &rowsOf, "Names of the table's rows.")
       .def_property_readonly("track", [](const BenchmarkPlan& plan) { return plan.settings().track; })
@@ -73,13 +76,17 @@ void bindBenchmark(py::module& module)
            "scans) and skipped ((scan, reason)). Raises RuntimeError naming the scan's file. The GIL is released.");
   py::class_<BenchmarkSum>(module, "BenchmarkSum", "Adds up reports of parts, in any order.")
       .def(py::init<const BenchmarkPlan&>(), py::arg("plan"))
-      .def("add", [](BenchmarkSum& sum, const py::bytes& report) { sum.add(report); }, py::arg("report"),
-           "Raises ValueError where it is no part of the plan's benchmark, or was added before.")
+      .def(
+          "add", [](BenchmarkSum& sum, const py::bytes& report) { sum.add(report); }, py::arg("report"),
+          "Raises ValueError where it is no part of the plan's benchmark, or was added before.")
       .def("skip", &BenchmarkSum::skip, py::arg("scan"), py::arg("reason"), "A scan that could not be used.")
-      .def("table", [](BenchmarkSum& sum, bool interrupted, std::size_t width)
-           { return formatBenchmark(sum.total(interrupted), width); }, py::arg("interrupted"), py::arg("width"),
-           "panoptic_benchmark's tables; width 0 is any.")
-      .def("json", [](BenchmarkSum& sum, bool interrupted) { return py::bytes(sum.total(interrupted).toJsonText()); },
-           py::arg("interrupted"), "panoptic_benchmark's report.");
+      .def(
+          "table",
+          [](BenchmarkSum& sum, bool interrupted, std::size_t width)
+          { return formatBenchmark(sum.total(interrupted), width); },
+          py::arg("interrupted"), py::arg("width"), "panoptic_benchmark's tables; width 0 is any.")
+      .def(
+          "json", [](BenchmarkSum& sum, bool interrupted) { return py::bytes(sum.total(interrupted).toJsonText()); },
+          py::arg("interrupted"), "panoptic_benchmark's report.");
 }
 }  // namespace lidar_panoptic_clustering

@@ -22,10 +22,10 @@ std::vector<std::string> sequencesOf(const BenchmarkSettings& settings)
       names.push_back(name);
   }
   if (!names.empty()) return names;
-  throw std::runtime_error(
-      settings.evaluate || settings.semantics.empty()
-          ? "no sequence of " + settings.dataset + " has a folder 'labels'"
-          : "no sequence of " + settings.dataset + " has classes in " + settings.semantics + "/sequences/SS/predictions");
+  throw std::runtime_error(settings.evaluate || settings.semantics.empty()
+                               ? "no sequence of " + settings.dataset + " has a folder 'labels'"
+                               : "no sequence of " + settings.dataset + " has classes in " + settings.semantics +
+                                     "/sequences/SS/predictions");
 }
 
 BenchmarkSettings ofSequence(BenchmarkSettings settings, const std::string& sequence)

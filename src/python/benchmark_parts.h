@@ -39,7 +39,7 @@ class SequenceBenchmark
 public:
   struct Result
   {
-    std::string report;                ///< JSON of the part's BenchmarkReport; empty for predictions alone
+    std::string report;                 ///< JSON of the part's BenchmarkReport; empty for predictions alone
     std::size_t used = 0, resumed = 0;  ///< scans; those of which a run before left the predictions
     std::vector<std::pair<std::string, std::string>> skipped;  ///< scan and reason
   };

@@ -35,13 +35,20 @@ Options)";
 Options describeOptions()
 {
   Options options = describeProgram(kUsage);
-  for (const BenchmarkOption& one : kBenchmarkOptions)
-    switch (one.kind)
+  for (const BenchmarkOption& one : kBenchmarkOptions) switch (one.kind)
     {
-      case OptionKind::kFlag: options.add_options()(one.name, one.text); break;
-      case OptionKind::kText: options.add_options()(one.name, textValue(one.value), one.text); break;
-      case OptionKind::kList: options.add_options()(one.name, textValues(one.value)->composing(), one.text); break;
-      case OptionKind::kNumber: options.add_options()(one.name, numberValue(one.number), one.text); break;
+      case OptionKind::kFlag:
+        options.add_options()(one.name, one.text);
+        break;
+      case OptionKind::kText:
+        options.add_options()(one.name, textValue(one.value), one.text);
+        break;
+      case OptionKind::kList:
+        options.add_options()(one.name, textValues(one.value)->composing(), one.text);
+        break;
+      case OptionKind::kNumber:
+        options.add_options()(one.name, numberValue(one.number), one.text);
+        break;
     }
   options.add_options()("jobs", numberValue(1),
                         "threads, each on scans of its own; the quality does not depend on it, but times are best "

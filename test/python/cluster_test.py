@@ -10,7 +10,7 @@ import time
 import numpy as np
 import pytest
 
-pytest.importorskip('distributed', reason="no Dask 'distributed'")
+pytest.importorskip('distributed', minversion='2022.12', reason="no Dask 'distributed' of 2022.12 or newer")
 
 COMMAND = [sys.executable, '-m', 'lidar_panoptic_clustering']
 CAR, ROAD = 10, 40
