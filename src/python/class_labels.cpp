@@ -63,5 +63,6 @@ void ClassLabels::refuse(const IdsView& view) const
   {
     throw std::invalid_argument(error.what());
   }
+  throw std::invalid_argument("labels: expected that nobody writes to them while they are read, found others");
 }
 }  // namespace lidar_panoptic_clustering
