@@ -202,6 +202,39 @@ def test_a_scan_that_cannot_be_read(data, tmp_path, benchmark):
     assert quality(tmp_path / 'r.json') == quality(tmp_path / 'cpp.json')
 
 
+@pytest.mark.parametrize('keep_going', [True, False])
+def test_a_scan_that_kills_its_workers(keep_going):
+    """Its task is divided until it is found."""
+    import dask
+
+    from lidar_panoptic_clustering import _cluster
+    from lidar_panoptic_clustering._connect import Cluster, connect
+    from lidar_panoptic_clustering._progress import Progress
+    from lidar_panoptic_clustering._tasks import Part, Work
+
+    def run_part(_, part):
+        if part.begin <= 5 < part.end:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return {'used': part.end - part.begin, 'resumed': 0, 'skipped': [], 'report': b''}
+
+    taken, skipped = [], []
+    parts = [Part('00', 0, 4, '000000'), Part('00', 4, 8, '000004'), Part('00', 8, 9, '000008')]
+    with dask.config.set({'distributed.scheduler.allowed-failures': 0}), pytest.MonkeyPatch.context() as patch, \
+            connect(Cluster(None, None, 2, None, 60.0)) as client:
+        patch.setattr(_cluster, 'run_part', run_part)
+        run_all = _cluster.Run(client, 'test', Work((), True, ''), keep_going, None, taken.append,
+                               lambda scan, reason: skipped.append((scan, reason)))
+        outcome = run_all.run(iter(parts), Progress('test', 9), lambda: False)
+    if keep_going:
+        assert outcome == (False, False, None)
+        assert sum(result['used'] for result in taken) == 8
+        assert [scan for scan, _ in skipped] == ['00/scan number 5']
+        assert 'each worker that was given it ended' in skipped[0][1]
+    else:
+        assert outcome.interrupted and '4 scans from 00/000004 on: each worker' in outcome.failure
+        assert not skipped
+
+
 def test_labelling_goes_on_where_it_stopped(data, tmp_path, benchmark):
     benchmark('--dataset', data, '--columns', 512, '--algorithms', 'birds_eye', '--output', tmp_path / 'cpp')
     options = ['--dataset', data, '--columns', 512, '--algorithm', 'birds_eye', '--output', 'labels', '--workers', 2,
