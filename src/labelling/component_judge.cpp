@@ -9,9 +9,18 @@ namespace
 {
 constexpr float kPersonHeight = 2.2F;  // [m] with a hat on; cars are lower, vans, trucks and buses higher
 constexpr float kHovering = 2.0F;      // [m] nothing that drives or walks ends above
+constexpr float kLowest = 0.4F;        // [m] nothing that drives or walks ends below; kerbs, plants and stones do
 constexpr float kWidest = 3.2F;        // [m] the European limit of 2.55 with mirrors
 constexpr float kCarLength = 7.0F;     // [m] with a trailer hitch, or two that stand close
 constexpr std::uint32_t kFewestReturns = 4, kFewestFeet = 5, kFewestTriples = 20;
+constexpr std::uint32_t kMostHidden =
+    4;  // hidden columns of a foot to one that is seen: what few tell is not the whole
+
+/// Below what the whole times `least` is; false where there is nothing.
+bool isBelow(float least, std::uint32_t part, std::uint32_t whole)
+{
+  return static_cast<float>(part) < least * static_cast<float>(whole);
+}
 
 float share(std::uint32_t part, std::uint32_t whole)
 {
@@ -41,7 +50,7 @@ struct ComponentJudge::Appearance
       : size(c.footprint.smallestRectangle()),
         tall(c.top > kPersonHeight),
         maybe_tall(tall || c.open_top),
-        has_feet(c.blocked + c.undercut >= kFewestFeet),
+        has_feet(c.blocked + c.undercut >= kFewestFeet && kMostHidden * (c.blocked + c.undercut) >= c.hidden),
         undercut(has_feet ? share(c.undercut, c.blocked + c.undercut) : 0.0F),
         rough(c.triples >= kFewestTriples ? share(c.rough_triples, c.triples) : 0.0F)
   {
@@ -60,11 +69,11 @@ ComponentJudge::Bargain ComponentJudge::bargainOf(StructureBias bias)
   switch (bias)
   {
     case StructureBias::kStrict:
-      return {0.33F, 1.3F, 0.6F, 0.4F, 0.6F, 0.25F};
+      return {0.33F, 1.3F, 0.3F, 0.6F, 0.4F, 0.6F, 0.25F};
     case StructureBias::kBalanced:
-      return {0.42F, 0.5F, 0.5F, 0.15F, 0.5F, 0.15F};
+      return {0.42F, 0.5F, 0.2F, 0.5F, 0.15F, 0.5F, 0.15F};
     case StructureBias::kKeepObjects:
-      return {0.5F, 0.3F, 0.35F, 0.1F, 0.4F, 0.0F};
+      return {0.5F, 0.3F, 0.1F, 0.35F, 0.1F, 0.4F, 0.0F};
   }
   throw std::invalid_argument("structure: expected one of its values");
 }
@@ -72,7 +81,7 @@ ComponentJudge::Bargain ComponentJudge::bargainOf(StructureBias bias)
 bool ComponentJudge::isStructure(const ScanComponent& c) const
 {
   if (c.point_count < kFewestReturns) return true;
-  if (c.top > limits_.height || c.bottom > kHovering) return true;
+  if (c.top > limits_.height || c.top < kLowest || c.bottom > kHovering) return true;
   if (!c.footprint.fits(limits_.length, kWidest)) return true;
   const Appearance appearance(c);
   return isPole(c, appearance) || isFoliage(appearance) || isWall(c, appearance) || isBehind(c, appearance);
@@ -90,7 +99,9 @@ bool ComponentJudge::isPole(const ScanComponent& c, const Appearance& a)
 bool ComponentJudge::isFoliage(const Appearance& a) const
 {
   const bool may_be_rider = a.undercut >= 0.5F && a.size.length < 2.2F && !a.tall;
-  return a.rough > bargain_.most_rough && !may_be_rider;
+  // seats and what lies behind them, through the windows; a bush of that width stands on the ground
+  const bool may_be_car = a.undercut >= 0.5F && a.size.width > 1.0F && a.size.length < 5.0F && !a.maybe_tall;
+  return a.rough > bargain_.most_rough && !may_be_rider && !may_be_car;
 }
 
 bool ComponentJudge::isWall(const ScanComponent& c, const Appearance& a) const
@@ -98,17 +109,24 @@ bool ComponentJudge::isWall(const ScanComponent& c, const Appearance& a) const
   // a wheel or a sill near the ground may be all that is seen of a car's foot
   const bool has_cars_outline = a.size.width > 1.3F && a.size.length < kCarLength;
   if (a.maybe_tall && a.has_feet && a.undercut < (has_cars_outline ? bargain_.cars : bargain_.undercut)) return true;
+  // the wheels of a lorry or a bus block less of its length than a car's do
+  constexpr float kLorry = 1.3F;  // times the share
+  if (a.maybe_tall && a.has_feet && a.size.length > kCarLength && a.undercut < kLorry * bargain_.undercut) return true;
   constexpr float kLow = 0.7F;  // of the share: no foot of something low is hidden by its own width
   if (!has_cars_outline && a.size.length > 1.5F && a.has_feet && a.undercut < kLow * bargain_.undercut) return true;
   // seen over something that hides its foot
   if (a.maybe_tall && !a.has_feet && c.bottom > 0.25F && a.size.width < bargain_.hidden_foot_width) return true;
+  const bool is_hidden = a.maybe_tall && !a.has_feet && c.hidden > c.blocked + c.undercut;
+  if (is_hidden && isBelow(bargain_.least_free_tall, c.free_ends, c.ends)) return true;
   // fences and hedges: no vehicle is so long, as low as a car, and shows no width
   return !a.maybe_tall && a.size.length > 6.0F && a.size.width < 0.3F;
 }
 
 bool ComponentJudge::isBehind(const ScanComponent& c, const Appearance& a) const
 {
-  return !a.has_feet && static_cast<float>(c.free_ends) < bargain_.least_in_front * static_cast<float>(c.ends);
+  const bool has_depth = a.size.width > 0.7F && !a.maybe_tall;  // two sides of a car, where a wall shows one
+  const bool stands_on_wheels = a.has_feet && a.undercut >= bargain_.undercut;
+  return !has_depth && !stands_on_wheels && isBelow(bargain_.least_in_front, c.free_ends, c.ends);
 }
 
 bool ComponentJudge::isVehicle(const ScanComponent& c) const
@@ -125,9 +143,13 @@ bool ComponentJudge::isPerson(const ScanComponent& c) const
   constexpr std::uint32_t kFewest = 10;
   if (c.point_count < kFewest || c.open_top) return false;
   if (c.top < 1.2F || c.top > 2.1F || c.top - c.bottom < 0.5F || c.bottom > 1.1F) return false;  // sitting to tall
+  // beams that came by underneath: a window's frame, a mirror; legs stand on the ground, or something hides them
+  constexpr float kHangs = 0.35F;
+  constexpr std::uint32_t kBeams = 2;
+  if (c.bottom > kHangs && c.undercut > c.blocked + kBeams) return false;
   const RectangleSize size = c.footprint.smallestRectangle();
   if (size.length < 0.3F || size.length > 1.1F || size.width < 0.05F || size.width > 0.9F) return false;
-  if (share(c.free_ends, c.ends) < bargain_.least_free) return false;
+  if (isBelow(bargain_.least_free, c.free_ends, c.ends)) return false;
   return c.triples < kFewestTriples || share(c.rough_triples, c.triples) < kMostRough;
 }
 }  // namespace lidar_panoptic_clustering

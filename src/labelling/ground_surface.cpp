@@ -66,7 +66,10 @@ std::uint32_t sectorOf(float x, float y)
 }
 }  // namespace
 
-GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), distance_(kCells), rise_(kCells), unseen_(kCells) {}
+GroundSurface::GroundSurface()
+    : lowest_(kCells), ground_(kCells), distance_(kCells), rise_(kCells), unseen_(kCells), expected_(kSectors)
+{
+}
 
 bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope,
                             std::vector<GroundedReturn>& returns)
@@ -197,10 +200,6 @@ std::size_t GroundSurface::fitPlane(float gate)
 
 void GroundSurface::follow(const LabelledCloud& cloud, float max_slope)
 {
-  constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
-  constexpr float kMostStep = 0.5F;  // [m] below a bumper
-  // [m] what rises by more within a cell is a face of something, whose lower edge may hang over the ground by a sill
-  constexpr float kFace = 0.3F, kFaceStep = 0.15F;
   for (std::uint32_t sector = 0; sector < kSectors; ++sector)
   {
     const std::uint32_t cell = sector * kBins;
@@ -208,29 +207,68 @@ void GroundSurface::follow(const LabelledCloud& cloud, float max_slope)
   }
   for (std::uint32_t bin = 1; bin < kBins; ++bin)
   {
-    const float step = kGrid.middle[bin] - kGrid.middle[bin - 1];
-    for (std::uint32_t sector = 0; sector < kSectors; ++sector)
-    {
-      const std::uint32_t inside[] = {sector * kBins + bin - 1, (sector + 1) % kSectors * kBins + bin - 1,
-                                      (sector + kSectors - 1) % kSectors * kBins + bin - 1};
-      float weights = 0.0F, expected = 0.0F, unseen = kFar;
-      for (const std::uint32_t neighbour : inside)
-      {
-        const float weight = 1.0F / (1.0F + unseen_[neighbour]);
-        weights += weight, expected += weight * ground_[neighbour];
-        unseen = std::min(unseen, unseen_[neighbour]);
-      }
-      expected /= weights;
+    followTo(bin, cloud, max_slope);
+    refuseIslands(bin);
+  }
+}
 
-      const std::uint32_t cell = sector * kBins + bin;
-      const LabelledPoint& low = cloud.points[lowest_[cell].point];
-      const float found = plane_.heightOf(low.x, low.y, low.z);
-      const bool is_face = lowest_[cell].top - lowest_[cell].z > kFace;
-      const float gate = std::min(is_face ? kFaceStep : kMostStep, kNoise + max_slope * (unseen + step));
-      const bool seen = lowest_[cell].z != kFar && std::abs(found - expected) < gate;
-      ground_[cell] = seen ? found : expected;
-      distance_[cell] = seen ? std::hypot(low.x, low.y) : kGrid.middle[bin];
-      unseen_[cell] = seen ? 0.0F : unseen + step;
+/// The cells of a bin, from those inside of them.
+void GroundSurface::followTo(std::uint32_t bin, const LabelledCloud& cloud, float max_slope)
+{
+  constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
+  constexpr float kMostStep = 0.5F;  // [m] below a bumper
+  // [m] what rises by more within a cell is a face of something, whose lower edge may hang over the ground by a sill
+  constexpr float kFace = 0.3F, kFaceStep = 0.15F;
+  const float step = kGrid.middle[bin] - kGrid.middle[bin - 1];
+  for (std::uint32_t sector = 0; sector < kSectors; ++sector)
+  {
+    const std::uint32_t inside[] = {sector * kBins + bin - 1, (sector + 1) % kSectors * kBins + bin - 1,
+                                    (sector + kSectors - 1) % kSectors * kBins + bin - 1};
+    float weights = 0.0F, expected = 0.0F, unseen = kFar;
+    for (const std::uint32_t neighbour : inside)
+    {
+      const float weight = 1.0F / (1.0F + unseen_[neighbour]);
+      weights += weight, expected += weight * ground_[neighbour];
+      unseen = std::min(unseen, unseen_[neighbour]);
+    }
+    expected /= weights;
+
+    const std::uint32_t cell = sector * kBins + bin;
+    const LabelledPoint& low = cloud.points[lowest_[cell].point];
+    const float found = plane_.heightOf(low.x, low.y, low.z);
+    const bool is_face = lowest_[cell].top - lowest_[cell].z > kFace;
+    const float gate = std::min(is_face ? kFaceStep : kMostStep, kNoise + max_slope * (unseen + step));
+    const bool seen = lowest_[cell].z != kFar && std::abs(found - expected) < gate;
+    expected_[sector] = expected;
+    ground_[cell] = seen ? found : expected;
+    distance_[cell] = seen ? std::hypot(low.x, low.y) : kGrid.middle[bin];
+    unseen_[cell] = seen ? 0.0F : unseen + step;
+  }
+}
+
+/// What rises out of ground that was not seen for a while, no wider than a car is long, and with no such rise on
+/// either side of it, is the sill of one: slopes are wider.
+void GroundSurface::refuseIslands(std::uint32_t bin)
+{
+  constexpr float kRise = 0.2F;    // [m] a sill hangs as high at least
+  constexpr float kWidest = 6.0F;  // [m] a car and a cell
+  const float width = kGrid.middle[bin] * 2.0F * 3.14159265F / kSectors;
+  const auto cellOf = [&](std::uint32_t sector) { return sector % kSectors * kBins + bin; };
+  const auto rises = [&](std::uint32_t sector)
+  { return unseen_[cellOf(sector)] == 0.0F && ground_[cellOf(sector)] - expected_[sector % kSectors] > kRise; };
+  const auto widest = std::min(kSectors - 1, static_cast<std::uint32_t>(kWidest / width));
+  for (std::uint32_t begin = 0; begin < kSectors; ++begin)
+  {
+    if (!rises(begin) || rises(begin + kSectors - 1)) continue;
+    std::uint32_t end = begin;
+    while (end - begin <= widest && rises(end)) ++end;
+    if (end - begin > widest) continue;
+    for (std::uint32_t sector = begin; sector < end; ++sector)
+    {
+      const std::uint32_t cell = cellOf(sector), inner = cell - 1;
+      ground_[cell] = expected_[sector % kSectors];
+      distance_[cell] = kGrid.middle[bin];
+      unseen_[cell] = unseen_[inner] + kGrid.middle[bin] - kGrid.middle[bin - 1];
     }
   }
 }

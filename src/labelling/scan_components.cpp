@@ -47,7 +47,7 @@ void ScanComponent::add(const ScanComponent& other)
   bottom = std::min(bottom, other.bottom), top = std::max(top, other.top);
   footprint.add(other.footprint);
   open_top |= other.open_top;
-  blocked += other.blocked, undercut += other.undercut;
+  blocked += other.blocked, undercut += other.undercut, hidden += other.hidden;
   triples += other.triples, rough_triples += other.rough_triples;
   ends += other.ends, free_ends += other.free_ends;
 }
@@ -59,7 +59,7 @@ void ScanComponents::find(const LabelledCloud& cloud, const std::vector<Grounded
   gatherParts(cloud, returns);
   joinParts();
   const bool highest_first = isHighestFirst(cloud, returns);
-  examineTops(cloud, returns, highest_first);
+  examineTops(cloud, highest_first);
   examineFeet(cloud, returns, distances.above, highest_first);
   examineLines(cloud, returns);
   components_.assign(component_count_, {});
@@ -152,19 +152,13 @@ void ScanComponents::joinParts()
   }
 }
 
-void ScanComponents::examineTops(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                                 bool highest_first)
+/// Of the sensor's highest beams, those that do not point down: a scan in which nothing is as high as the sensor does
+/// not tell where they are.
+void ScanComponents::examineTops(const LabelledCloud& cloud, bool highest_first)
 {
-  constexpr std::uint32_t kTopRows = 3;
-  const std::uint32_t rows = std::min(kTopRows, cloud.height), columns = cloud.width;
-  for (std::uint32_t column = 0; column < columns; ++column)
-    for (std::uint32_t k = 0; k < rows; ++k)
-    {
-      const std::uint32_t pixel = (highest_first ? k : cloud.height - 1 - k) * columns + column;
-      if (!returns[pixel].isReturn()) continue;
-      if (part_of_[pixel] != kNone) parts_[part_of_[pixel]].open_top = true;
-      break;  // what lies below the highest return of a column ends there
-    }
+  const std::uint32_t columns = cloud.width, begin = highest_first ? 0 : (cloud.height - 1) * columns;
+  for (std::uint32_t pixel = begin; pixel < begin + columns && cloud.height > 0; ++pixel)
+    if (part_of_[pixel] != kNone && cloud.points[pixel].z > 0.0F) parts_[part_of_[pixel]].open_top = true;
 }
 
 void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
@@ -183,8 +177,14 @@ void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<G
       const std::uint32_t pixel = row * columns + column;
       if (!returns[pixel].isReturn()) continue;
       const std::uint32_t before = std::exchange(row_before_[column], row);
-      if (part_of_[pixel] != kNone || before == kNone) continue;
+      if (before == kNone) continue;
       const std::uint32_t over = before * columns + column;
+      if (part_of_[pixel] != kNone)
+      {
+        if (part_of_[over] != kNone && of(over) != of(pixel) && returns[pixel].range < returns[over].range - kUnder)
+          ++parts_[part_of_[over]].hidden;
+        continue;
+      }
       if (part_of_[over] == kNone || (row > before ? row - before : before - row) > kRowReach) continue;
       ScanComponent& c = parts_[part_of_[over]];
       const bool is_first = returns[over].height >= above;  // not a foot itself

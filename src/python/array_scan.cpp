@@ -28,7 +28,7 @@ ArrayScan::ArrayScan(const ArrayScanConfig& config) : config_(config)
 
 void ArrayScan::place(const PointsView& points, const std::vector<std::uint32_t>& classes, const IdsView* ring)
 {
-  readPoints(points, scan_.points);
+  points_ = readPoints(points, buffer_);
   is_image_ = false;
   if (ring != nullptr) readIds(*ring, "ring", ring_);
   const bool by_itself = config_.organizer.layout == "auto" && ring == nullptr;
@@ -52,7 +52,7 @@ void ArrayScan::takeImage(const PointsView& points, const std::vector<std::uint3
   for (std::size_t i = 0; i < points.size(); ++i)
   {
     LabelledPoint& to = cloud.points[i];
-    const ScanPoint& from = scan_.points[i];
+    const ScanPoint& from = points_[i];
     to.x = from.x, to.y = from.y, to.z = from.z, to.intensity = from.remission;
     to.label = classes.empty() ? 0 : classes[i];
   }
@@ -62,7 +62,7 @@ void ArrayScan::unfold(const std::vector<std::uint32_t>& classes)
 {
   scan_.layout = Layout::kUnfold;
   scan_.organized_input = false;
-  projector_->project(scan_.points, classes, scan_.image);
+  projector_->project(points_, classes, scan_.image);
   const auto rows = static_cast<std::uint32_t>(config_.rows);
   if (scan_.image.rings > rows + rows / 4 + 1)
     throw std::invalid_argument("points: expected them ring after ring as in KITTI's files, up to " +
@@ -75,7 +75,7 @@ void ArrayScan::organize(const PointsView& points, const std::vector<std::uint32
 {
   raw_.resize(points.size());
   for (std::size_t i = 0; i < raw_.size(); ++i)
-    raw_[i] = {scan_.points[i], classes.empty() ? 0 : classes[i], ring != nullptr ? ring_[i] : 0};
+    raw_[i] = {points_[i], classes.empty() ? 0 : classes[i], ring != nullptr ? ring_[i] : 0};
   constexpr auto kFloat = static_cast<std::uint8_t>(NumberType::kFloat32);
   constexpr auto kId = static_cast<std::uint8_t>(NumberType::kUint32);
   RawCloud cloud;
@@ -89,5 +89,6 @@ void ArrayScan::organize(const PointsView& points, const std::vector<std::uint32
   cloud.data_size = raw_.size() * sizeof(RawPoint);
   Organizer organizer = classes.empty() ? *pristine_without_ : *pristine_with_labels_;
   organizer.organize(cloud, scan_);
+  points_ = scan_.points;
 }
 }  // namespace lidar_panoptic_clustering

@@ -43,12 +43,15 @@ public:
   /// Throws std::invalid_argument on a value outside its range, std::runtime_error on a sensor that cannot be read.
   explicit ArrayScan(const ArrayScanConfig& config);
 
-  /// `classes`: one a point, row-major, or empty for none; `ring`: one a point, or null. Throws std::invalid_argument,
-  /// with what was expected and found, where the points do not lie as the layout says.
+  /// Points that lie as ScanPoint has them are not copied. `classes`: one a point, row-major, or empty for none;
+  /// `ring`: one a point, or null. Throws std::invalid_argument, with what was expected and found, where the points do
+  /// not lie as the layout says.
   void place(const PointsView& points, const std::vector<std::uint32_t>& classes, const IdsView* ring);
 
-  /// The scan placed last. Where isImage(), only `points` and `image.cloud` of it are filled.
+  /// The scan placed last. Where isImage(), only `image.cloud` and `layout` of it are filled; `points` may be empty.
   OrganizedScan& scan() { return scan_; }
+  /// Its points, which may lie in the array: valid as long as that is.
+  ScanPoints points() const { return points_; }
   /// Whether each point is the pixel of the same number.
   bool isImage() const { return is_image_; }
 
@@ -66,6 +69,8 @@ private:
   std::optional<PointProjector> projector_;
   std::optional<Organizer> pristine_with_labels_, pristine_without_;  ///< never given a cloud
   OrganizedScan scan_;
+  std::vector<ScanPoint> buffer_;
+  ScanPoints points_{nullptr, 0};
   bool is_image_ = false;
   std::vector<std::uint32_t> ring_;
   std::vector<RawPoint> raw_;

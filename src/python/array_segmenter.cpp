@@ -61,24 +61,22 @@ void ArraySegmenter::segment(const PointsView& points, const IdsView& labels, co
                              std::uint32_t* instances, std::uint32_t* voted)
 {
   const std::lock_guard<std::mutex> lock(mutex_);
-  has_scan_ = false;
+  objects_.clear(), things_.points.clear(), things_of_.id.clear();  // a scan that is refused leaves none
   labels_->read(labels, classes_);
   scan_->place(points, classes_, ring);
   pipeline_->segment(scan_->scan().image.cloud);
   carryBack();
-  has_scan_ = true;
-  std::copy(instance_.begin(), instance_.end(), instances);
+  keepObjects(instances);
   if (voted != nullptr) vote(voted);
 }
 
 void ArraySegmenter::carryBack()
 {
   pixelInstances(pipeline_->things(), pipeline_->instances(), instance_of_pixel_);
-  const OrganizedScan& scan = scan_->scan();
   if (scan_->isImage())
     instance_ = instance_of_pixel_;
   else
-    hidden_points_->label(scan.points, classes_, scan.image, instance_of_pixel_, instance_);
+    hidden_points_->label(scan_->points(), classes_, scan_->scan().image, instance_of_pixel_, instance_);
 }
 
 void ArraySegmenter::vote(std::uint32_t* voted) const
@@ -94,50 +92,52 @@ void ArraySegmenter::vote(std::uint32_t* voted) const
   }
 }
 
-std::vector<ArrayObject> ArraySegmenter::objects()
+/// Writes the result, and copies of the array what boxes need: it may change until they are asked for.
+void ArraySegmenter::keepObjects(std::uint32_t* instances)
 {
-  const std::lock_guard<std::mutex> lock(mutex_);
-  std::vector<ArrayObject> objects;
-  if (!has_scan_) return objects;
   const ClassTable& table = pipeline_->table();
   const Instances& in_image = pipeline_->instances();
+  const ScanPoints points = scan_->points();
   for (std::size_t k = 0; k < instance_.size(); ++k)
   {
     const std::uint32_t id = instance_[k];
+    instances[k] = id;
     if (id == 0) continue;
-    for (auto next = static_cast<std::uint32_t>(objects.size()); next < id; ++next)
-      objects.push_back({next + 1, 0, InstanceBox(), 0});
-    ArrayObject& object = objects[id - 1];
-    if (object.points++ > 0) continue;
-    const ClassIndex own = table.find(classes_[k]);
-    object.class_id = table[id <= in_image.count() ? in_image.objects[id - 1].class_index : own].ids.front();
+    for (auto next = static_cast<std::uint32_t>(objects_.size()); next < id; ++next)
+      objects_.push_back({next + 1, 0, InstanceBox(), 0});
+    ArrayObject& object = objects_[id - 1];
+    if (object.points++ == 0)
+    {
+      const bool is_hidden = id > in_image.count();
+      const ClassIndex index = is_hidden ? table.find(classes_[k]) : in_image.objects[id - 1].class_index;
+      object.class_id = table[index].ids.front();
+    }
+    if (!hasDirection(points[k])) continue;
+    things_.points.push_back({points[k].x, points[k].y, points[k].z, 0});
+    things_of_.id.push_back(id);
   }
-  fitBoxes(objects);
-  return objects;
 }
 
-/// Of all points, hidden ones too. Objects without coordinates keep an empty box.
-void ArraySegmenter::fitBoxes(std::vector<ArrayObject>& objects)
+std::vector<ArrayObject> ArraySegmenter::objects()
 {
-  const std::vector<ScanPoint>& points = scan_->scan().points;
-  std::vector<std::uint32_t> slot_of(objects.size(), 0);
-  ThingScan things;
-  Instances instances;
-  for (std::size_t k = 0; k < points.size(); ++k)
+  const std::lock_guard<std::mutex> lock(mutex_);
+  std::vector<std::uint32_t> slot_of(objects_.size(), 0);  // of those that have coordinates, from 1
+  Instances slots;
+  for (const std::uint32_t id : things_of_.id)
   {
-    if (instance_[k] == 0 || !hasDirection(points[k])) continue;
-    std::uint32_t& slot = slot_of[instance_[k] - 1];
+    std::uint32_t& slot = slot_of[id - 1];
     if (slot == 0)
     {
-      instances.objects.emplace_back();
-      slot = static_cast<std::uint32_t>(instances.objects.size());
+      slots.objects.emplace_back();
+      slot = static_cast<std::uint32_t>(slots.objects.size());
     }
-    ++instances.objects[slot - 1].point_count;
-    things.points.push_back({points[k].x, points[k].y, points[k].z, 0});
-    instances.id.push_back(slot);
+    ++slots.objects[slot - 1].point_count;
+    slots.id.push_back(slot);
   }
-  const std::vector<InstanceBox>& boxes = boxes_.fit(things, instances);
+  const std::vector<InstanceBox>& boxes = boxes_.fit(things_, slots);
+  std::vector<ArrayObject> objects = objects_;
   for (std::size_t i = 0; i < objects.size(); ++i)
     if (slot_of[i] != 0) objects[i].box = boxes[slot_of[i] - 1];
+  return objects;
 }
 }  // namespace lidar_panoptic_clustering

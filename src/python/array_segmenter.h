@@ -55,8 +55,8 @@ public:
 
 private:
   void carryBack();
+  void keepObjects(std::uint32_t* instances);
   void vote(std::uint32_t* voted) const;
-  void fitBoxes(std::vector<ArrayObject>& objects);
 
   std::string algorithm_;
   ParameterMap parameters_;
@@ -66,7 +66,11 @@ private:
   std::unique_ptr<FramePipeline> pipeline_;
   std::optional<HiddenPointLabeller> hidden_points_;
   std::vector<std::uint32_t> classes_, instance_of_pixel_, instance_;
-  bool has_scan_ = false;
   InstanceBoxes boxes_;
+
+  /// Of the scan segmented last, for objects(): each object without its box, and the points that have coordinates.
+  std::vector<ArrayObject> objects_;
+  ThingScan things_;
+  Instances things_of_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -56,19 +56,18 @@ void ArrayTracker::track(const PointsView& points, const IdsView& labels, const 
     throw std::invalid_argument("time_s: expected a number of seconds, found " + std::to_string(time_s));
   const std::lock_guard<std::mutex> lock(mutex_);
   has_scan_ = false;
-  readPoints(points, points_);
+  const ScanPoints at = readPoints(points, buffer_);
   labels_->read(labels, classes_);
   readIds(instances, "instances", instances_);
   const ClassTable& table = *labels_->table();
   stamp_us_ = std::llround(1e6 * time_s);
   tracker_->begin(stamp_us_, pose);
-  for (std::size_t i = 0; i < points_.size(); ++i)
-    if (instances_[i] != 0)
-      tracker_->add(instances_[i], table.find(classes_[i]), points_[i].x, points_[i].y, points_[i].z);
+  for (std::size_t i = 0; i < at.size(); ++i)
+    if (instances_[i] != 0) tracker_->add(instances_[i], table.find(classes_[i]), at[i].x, at[i].y, at[i].z);
   tracker_->finish();
   has_scan_ = true;
   std::size_t next = 0;
-  for (std::size_t i = 0; i < points_.size(); ++i)
+  for (std::size_t i = 0; i < at.size(); ++i)
   {
     tracks[i] = 0;
     if (voted != nullptr) voted[i] = classes_[i];
@@ -135,6 +134,8 @@ void ArrayGroundLabeler::label(const PointsView& points, const IdsView* ring, st
   else
   {
     labeler_->label(scan.image.cloud);
+    const ScanPoints at = scan_->points();
+    if (at.begin() != scan.points.data()) scan.points.assign(at.begin(), at.end());
     labeler_->labelPoints(scan, labels_);
   }
   std::copy(labels_.begin(), labels_.end(), labels);

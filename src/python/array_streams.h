@@ -46,7 +46,7 @@ private:
   std::mutex mutex_;
   std::unique_ptr<ClassLabels> labels_;
   std::unique_ptr<PointTracker> tracker_;
-  std::vector<ScanPoint> points_;
+  std::vector<ScanPoint> buffer_;
   std::vector<std::uint32_t> classes_, instances_;
   std::int64_t stamp_us_ = 0;
   bool has_scan_ = false;

@@ -66,25 +66,30 @@ void copyIdsOf(const IdsView& view, const std::string& what, std::uint32_t* to)
 }
 }  // namespace
 
-void readPoints(const PointsView& view, std::vector<ScanPoint>& points)
+ScanPoints readPoints(const PointsView& view, std::vector<ScanPoint>& buffer)
 {
-  points.resize(view.size());
-  if (points.empty()) return;
   const bool packed =
       !view.is_double && view.channels == 4 && view.channel_step == sizeof(float) &&
       view.column_step == sizeof(ScanPoint) &&
-      (view.height == 1 || view.row_step == static_cast<std::ptrdiff_t>(view.width * sizeof(ScanPoint)));
-  if (packed)
-    std::memcpy(points.data(), view.data, points.size() * sizeof(ScanPoint));
-  else if (view.is_double)
-    copyPoints<double>(view, points.data());
+      (view.height == 1 || view.row_step == static_cast<std::ptrdiff_t>(view.width * sizeof(ScanPoint))) &&
+      reinterpret_cast<std::uintptr_t>(view.data) % alignof(ScanPoint) == 0;
+  if (packed) return {reinterpret_cast<const ScanPoint*>(view.data), view.size()};
+  buffer.resize(view.size());
+  if (view.is_double)
+    copyPoints<double>(view, buffer.data());
   else
-    copyPoints<float>(view, points.data());
+    copyPoints<float>(view, buffer.data());
+  return buffer;
 }
 
 void readIds(const IdsView& view, const std::string& what, std::vector<std::uint32_t>& ids)
 {
   ids.resize(view.size());
+  const bool packed =
+      view.bytes == sizeof(std::uint32_t) && !view.is_signed && view.column_step == sizeof(std::uint32_t) &&
+      (view.height == 1 || view.row_step == static_cast<std::ptrdiff_t>(view.width * sizeof(std::uint32_t)));
+  if (packed && !ids.empty()) std::memcpy(ids.data(), view.data, ids.size() * sizeof(std::uint32_t));
+  if (packed) return;
   switch (view.bytes)
   {
     case 1:

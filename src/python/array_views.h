@@ -35,9 +35,10 @@ struct IdsView
   std::size_t size() const { return height * width; }
 };
 
-/// Copies the points, row-major. Remission is 0 where there is no fourth channel; a float64 beyond float's range
-/// becomes infinite. Linear; one memory copy for packed float32 of four channels.
-void readPoints(const PointsView& view, std::vector<ScanPoint>& points);
+/// Where the points lie as ScanPoint has them, one after the other, the view of them; otherwise copies them into
+/// `buffer`, row-major, and views that. Remission is 0 where there is no fourth channel; a float64 beyond float's range
+/// becomes infinite. Linear.
+ScanPoints readPoints(const PointsView& view, std::vector<ScanPoint>& buffer);
 
 /// Copies the ids, row-major. Throws std::invalid_argument naming `what`, the point and the number where one is
 /// negative or does not fit 32 bits. Linear.

@@ -6,7 +6,6 @@
 
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -44,9 +43,12 @@ public:
   const std::shared_ptr<const ClassTable>& table() const { return table_; }
 
 private:
+  std::uint32_t minusOneStandsFor(std::uint32_t no_class) const;
+  [[noreturn]] void refuse(const IdsView& view) const;
+
   std::shared_ptr<const ClassTable> table_, label_table_;
-  std::optional<ClassMapping> mapping_;  ///< where the tables differ
   double max_unknown_;
-  std::uint32_t no_class_;  ///< of the labels that come in
+  std::uint32_t no_class_;                     ///< of the labels that come in
+  std::vector<std::uint32_t> class_of_label_;  ///< by the low half; the highest bit where the table lacks the id
 };
 }  // namespace lidar_panoptic_clustering

@@ -26,17 +26,9 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
   sets_.reset(objects.size());
   if (distance > 0.0F && findReaches(objects, table, kRounding * distance))
   {
-    const auto groupOf = [&](std::uint32_t object) { return table[objects[object].class_index].group; };
-    cells_.clear(scan.size());
-    for (std::uint32_t i = 0; i < scan.size(); ++i)
-    {
-      const ThingPoint& p = scan.points[i];
-      if (reach_[object_of_thing[i]].contains(p.x, p.y)) cells_.add(p.x, p.y, groupOf(object_of_thing[i]), distance, i);
-    }
-    cells_.close();
-    distance_of_group_.assign(table.groupCount(), distance);
-    cells_.findComponents(distance_of_group_, component_of_cell_);
-    uniteComponents(object_of_thing);
+    sortByGroup(scan, table, objects, object_of_thing);
+    for (const auto& things : things_of_group_)
+      if (things.size() > 1) uniteClose(scan, things, distance, object_of_thing);
   }
   sets_.flatten(whole_of);
 }
@@ -75,11 +67,31 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
   return found;
 }
 
-void ClassBridging::uniteComponents(const std::vector<std::uint32_t>& object_of_thing)
+/// Lists the things that lie within reach of another object, group by group.
+void ClassBridging::sortByGroup(const ThingScan& scan, const ClassTable& table,
+                                const std::vector<RefinedObject>& objects,
+                                const std::vector<std::uint32_t>& object_of_thing)
 {
+  things_of_group_.resize(table.groupCount());
+  for (auto& things : things_of_group_) things.clear();
+  for (std::uint32_t i = 0; i < scan.size(); ++i)
+  {
+    const std::uint32_t object = object_of_thing[i];
+    if (reach_[object].contains(scan.points[i].x, scan.points[i].y))
+      things_of_group_[table[objects[object].class_index].group].push_back(i);
+  }
+}
+
+void ClassBridging::uniteClose(const ThingScan& scan, const std::vector<std::uint32_t>& things, float distance,
+                               const std::vector<std::uint32_t>& object_of_thing)
+{
+  cells_.clear(distance);
+  for (const std::uint32_t i : things) cells_.add(scan.points[i].x, scan.points[i].y, i);
+  cells_.close();
+  cells_.link(distance);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
   {
-    const std::uint32_t whole = object_of_thing[cells_.firstThing(component_of_cell_[cell])];
+    const std::uint32_t whole = object_of_thing[cells_.firstThing(cells_.components()[cell])];
     cells_.forEach(cell, [&](std::uint32_t thing) { sets_.unite(object_of_thing[thing], whole); });
   }
 }

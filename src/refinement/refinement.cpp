@@ -132,7 +132,7 @@ void Refinement::splitTooBig(const ThingScan& scan)
   {
     if (!isTooBig(objects_[k])) continue;
     slot_of_[k] = static_cast<std::uint32_t>(open_.size());
-    open_.push_back({count, count});
+    open_.push_back({k, count, count});
     count += objects_[k].point_count;
   }
   if (open_.empty()) return;
@@ -147,43 +147,119 @@ void Refinement::splitTooBig(const ThingScan& scan)
   }
 }
 
-/// Splits the object whose points are a range of things_; parts that are still too big are opened for the next turn.
+/// Splits an object whose points are a range of things_, and its parts, until they fit or hang together.
 void Refinement::split(const ThingScan& scan, Range range)
 {
-  const std::uint32_t object = object_of_thing_[things_[range.begin]];
-  const float reach = scan.class_link_distance[objects_[object].class_index];
-  int tenths = range.tenths;
-  const std::uint32_t parts =
-      splitter_.split(scan, &things_[range.begin], range.end - range.begin, reach, tenths, part_of_);
-  if (parts < 2) return;
-
+  const float reach = scan.class_link_distance[objects_[range.object].class_index];
+  if (range.tenths < LinkageTree::kFinest) return;
+  if (!splitter_.begin(scan, &things_[range.begin], range.end - range.begin, reach)) return;
   const auto first_fresh = static_cast<std::uint32_t>(objects_.size());
-  objects_.resize(objects_.size() + parts - 1);
-  votes_.resize(objects_.size() * scan.class_count);
-  const auto object_of_part = [&](std::uint32_t part) { return part == 0 ? object : first_fresh + part - 1; };
-  for (std::uint32_t part = 0; part < parts; ++part)
+  const std::uint32_t leaves = splitter_.leaves().size();
+  countLeafVotes(scan, range);
+  leaves_.resize(leaves);
+  std::iota(leaves_.begin(), leaves_.end(), 0U);
+  object_of_leaf_.assign(leaves, range.object);
+  other_reach_.clear();
+  parts_.assign(1, {range.object, 0, leaves, range.tenths});
+  while (!parts_.empty())
   {
-    objects_[object_of_part(part)] = RefinedObject();
-    std::fill_n(&votes_[std::size_t{object_of_part(part)} * scan.class_count], scan.class_count, 0U);
+    const Range part = parts_.back();
+    parts_.pop_back();
+    if (scan.class_link_distance[objects_[part.object].class_index] != reach)
+      other_reach_.push_back(part);
+    else
+      splitPart(part, scan.class_count);
   }
-  sorted_.resize(range.end - range.begin);
+  if (objects_.size() == first_fresh) return;
+  assignThings(scan, range);
+  openAgain(range);
+}
+
+/// Votes leaf by leaf, for the classes that occur in the object.
+void Refinement::countLeafVotes(const ThingScan& scan, Range range)
+{
+  classes_.clear();
+  const std::uint32_t* votes = &votes_[std::size_t{range.object} * scan.class_count];
+  for (std::uint32_t c = 0; c < scan.class_count; ++c)
+    if (votes[c] > 0) classes_.push_back(static_cast<ClassIndex>(c));
+  const LinkageTree& leaves = splitter_.leaves();
+  leaf_votes_.assign(leaves.size() * classes_.size(), 0);
+  if (classes_.size() == 1)
+  {
+    for (std::uint32_t leaf = 0; leaf < leaves.size(); ++leaf) leaf_votes_[leaf] = leaves.pointsOf(leaf);
+    return;
+  }
   for (std::uint32_t k = range.begin; k < range.end; ++k)
   {
-    const std::uint32_t i = things_[k], mine = object_of_part(part_of_[k - range.begin]);
-    object_of_thing_[i] = mine;
-    addRun(scan, i, i + 1, objects_[mine], &votes_[std::size_t{mine} * scan.class_count]);
+    const auto at = std::lower_bound(classes_.begin(), classes_.end(), scan.class_index[things_[k]]);
+    ++leaf_votes_[leaves.leafOf(k - range.begin) * classes_.size() + static_cast<std::size_t>(at - classes_.begin())];
   }
+}
+
+/// Splits what a range of leaves_ makes together; parts that are still too big are opened for the next turn.
+void Refinement::splitPart(Range part, std::uint32_t class_count)
+{
+  const std::uint32_t parts = splitter_.split(&leaves_[part.begin], part.end - part.begin, part.tenths, part_of_leaf_);
+  if (parts < 2) return;
+  const auto first_fresh = static_cast<std::uint32_t>(objects_.size());
+  objects_.resize(objects_.size() + parts - 1);
+  votes_.resize(objects_.size() * class_count);
+  sorted_.resize(part.end - part.begin);
   std::uint32_t begin = 0;
-  for (std::uint32_t part = 0; part < parts; ++part)
+  for (std::uint32_t k = 0; k < parts; ++k)
   {
+    const std::uint32_t object = k == 0 ? part.object : first_fresh + k - 1;
     std::uint32_t end = begin;
-    for (std::uint32_t k = range.begin; k < range.end; ++k)
-      if (part_of_[k - range.begin] == part) sorted_[end++] = things_[k];
-    elect(object_of_part(part), scan.class_count);
-    if (isTooBig(objects_[object_of_part(part)])) open_.push_back({range.begin + begin, range.begin + end, tenths - 1});
+    for (std::uint32_t i = part.begin; i < part.end; ++i)
+      if (part_of_leaf_[i - part.begin] == k) sorted_[end++] = leaves_[i];
+    fillFromLeaves(object, &sorted_[begin], end - begin, class_count);
+    if (isTooBig(objects_[object])) parts_.push_back({object, part.begin + begin, part.begin + end, part.tenths - 1});
     begin = end;
   }
-  std::copy(sorted_.begin(), sorted_.end(), things_.begin() + range.begin);
+  std::copy(sorted_.begin(), sorted_.end(), leaves_.begin() + part.begin);
+}
+
+/// Makes an object of leaves, all but the sums of its points.
+void Refinement::fillFromLeaves(std::uint32_t object, const std::uint32_t* leaves, std::uint32_t count,
+                                std::uint32_t class_count)
+{
+  objects_[object] = RefinedObject();
+  std::uint32_t* votes = &votes_[std::size_t{object} * class_count];
+  std::fill_n(votes, class_count, 0U);
+  OrderedFootprint outline;
+  for (const std::uint32_t* leaf = leaves; leaf != leaves + count; ++leaf)
+  {
+    object_of_leaf_[*leaf] = object;
+    outline.add(splitter_.outline(*leaf));
+    objects_[object].point_count += splitter_.leaves().pointsOf(*leaf);
+    for (std::size_t c = 0; c < classes_.size(); ++c) votes[classes_[c]] += leaf_votes_[*leaf * classes_.size() + c];
+  }
+  objects_[object].footprint = outline.outline();
+  elect(object, class_count);
+}
+
+/// Writes whose the points of a split object are now, and sums them up.
+void Refinement::assignThings(const ThingScan& scan, Range range)
+{
+  for (std::uint32_t k = range.begin; k < range.end; ++k)
+  {
+    const std::uint32_t i = things_[k], object = object_of_leaf_[splitter_.leaves().leafOf(k - range.begin)];
+    object_of_thing_[i] = object;
+    RefinedObject& o = objects_[object];
+    o.sum_x += scan.points[i].x, o.sum_y += scan.points[i].y, o.sum_z += scan.points[i].z;
+  }
+}
+
+/// Opens the parts whose class, by vote, is one with another link distance: their linkage has to be found anew.
+void Refinement::openAgain(Range range)
+{
+  for (const Range& part : other_reach_)
+  {
+    const auto begin = static_cast<std::uint32_t>(things_.size());
+    for (std::uint32_t k = range.begin; k < range.end; ++k)
+      if (object_of_thing_[things_[k]] == part.object) things_.push_back(things_[k]);
+    open_.push_back({part.object, begin, static_cast<std::uint32_t>(things_.size()), part.tenths});
+  }
 }
 
 /// Ids by first pixel for the wholes that are large enough.

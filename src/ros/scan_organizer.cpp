@@ -30,7 +30,7 @@ ScanOrganizer::ScanOrganizer(const ScanOrganizerConfig& config)
     : config_(config),
       labeller_(config.labeller),
       organizer_(withLabels(config)),
-      original_labeller_(labeller_.classTable())
+      original_labeller_(labeller_.classTable(), config.lasting_ids)
 {
 }
 

@@ -21,6 +21,7 @@ struct ScanOrganizerConfig
   OrganizerConfig organizer;
   ScanLabellerConfig labeller;
   bool float_fields = false;  ///< label and instance of ~output_original as float32, as pcl_ros's filters read them
+  bool lasting_ids = false;   ///< ~panoptic is a tracker's output, see OriginalLabeller
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -28,6 +29,7 @@ struct ScanOrganizerConfig
     OrganizerConfig::visit(self.organizer, visitor);
     ScanLabellerConfig::visit(self.labeller, visitor);
     visitor("float_fields", self.float_fields);
+    visitor("lasting_ids", self.lasting_ids);
   }
 };
 

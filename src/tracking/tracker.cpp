@@ -202,14 +202,21 @@ void Tracker::learn(std::int64_t stamp_us, const Observations& observations)
     if (track_of_[i] != kNone) vote(track_of_[i], observations.list[i]);
 }
 
+void Tracker::tellMotion(Track& track)
+{
+  track.object.position = track.motion.mean.head<2>();
+  track.object.position_covariance = track.motion.covariance.topLeftCorner<2, 2>();
+  track.object.velocity = track.motion.mean.tail<2>();
+  track.object.velocity_covariance = track.motion.covariance.bottomRightCorner<2, 2>();
+}
+
 void Tracker::follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin)
 {
   constexpr float kForget = 0.3F;  // of what was there and is not seen
   track.points = static_cast<float>(seen.point_count);
   track.motion = expected.motion;
   track.motion.correct(displacementOf(expected.outline, seen.extent), noiseOf(seen));
-  track.object.velocity = track.motion.mean.tail<2>();
-  track.object.velocity_covariance = track.motion.covariance.bottomRightCorner<2, 2>();
+  tellMotion(track);
   const Extent now = shifted(seen.extent, origin.x() - track.motion.mean.x(), origin.y() - track.motion.mean.y());
   for (std::size_t k = 0; k < Extent::kAxes; ++k)
   {
@@ -240,7 +247,7 @@ std::uint32_t Tracker::bear(std::int64_t stamp_us, const Observation& observatio
   track.prior_class = observation.class_index;
   const double x = origin.x() + static_cast<double>(observation.x), y = origin.y() + static_cast<double>(observation.y);
   track.motion = MotionState::at(x, y, noiseOf(observation), prior_[observation.class_index]);
-  track.object.velocity_covariance = track.motion.covariance.bottomRightCorner<2, 2>();
+  tellMotion(track);
   track.outline = shifted(observation.extent, origin.x() - x, origin.y() - y);
   tracks_.push_back(track);
   votes_.resize(votes_.size() + table_->size(), 0.0F);

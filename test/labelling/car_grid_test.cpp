@@ -11,7 +11,6 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-
 constexpr int kBody = 0;  // the first box
 
 /// A car on four wheels, its nearest corner at (x, y): 4.2 x 1.8 x 1.5 m, 0.22 m over the ground.
@@ -48,7 +47,7 @@ TEST_P(CarGrid, ACarOnFlatGroundIsFoundAtEveryDistance)
   const SensorModel sensor = SensorModel::load(GetParam());
   GroundLabeler labeler{GroundLabelerConfig{}};
   for (const float height : {1.73F, 2.0F})
-    for (const float gap : {-0.9F, 1.5F, 3.5F, 8.0F, 20.0F})
+    for (const float gap : {-0.9F, 1.5F, 2.5F, 3.5F, 5.0F, 8.0F, 12.0F, 20.0F})
       for (float distance = 4.0F; distance < 60.0F; distance += distance < 20.0F ? 1.0F : 4.0F)
       {
         RayScene scene;
@@ -59,6 +58,6 @@ TEST_P(CarGrid, ACarOnFlatGroundIsFoundAtEveryDistance)
       }
 }
 
-INSTANTIATE_TEST_SUITE_P(Labeler, CarGrid, testing::Values("hdl64e", "os1_64", "os1_128", "pandar64", "vlp32c"));
+INSTANTIATE_TEST_SUITE_P(Labeler, CarGrid, testing::ValuesIn(SensorModel::shippedNames()));
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -2,6 +2,7 @@
 #include "scan_fixture.h"
 
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
+#include "lidar_panoptic_clustering/tracking/cloud_tracker.h"
 
 #include <gtest/gtest.h>
 
@@ -129,6 +130,37 @@ TEST_P(SteadyState, theWholeWayAllocatesOnlyTheOutput)
   before = allocations;
   work(true);
   EXPECT_LE(allocations, before + scans.size()) << "with fresh outputs";
+}
+
+/// The street stands still here, and is left and come back to: tracks are born, hidden and lost all the time.
+TEST(TrackingSteadyState, AllocatesOnlyTheOutput)
+{
+  if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+  LidarSimulator simulator;
+  std::vector<PanopticCloud> scans(4);
+  for (std::size_t k = 0; k < scans.size(); ++k) simulator.scan(20 * k, scans[k]);
+  CloudTracker tracker(kittiTable());
+  PanopticCloud recycled;
+  std::int64_t stamp_us = 0;
+  const auto work = [&](bool fresh)
+  {
+    for (int round = 0; round < 10; ++round)
+      for (const PanopticCloud& scan : scans)
+      {
+        tracker.follow(scan, stamp_us += 100000, Eigen::Isometry3d::Identity());
+        PanopticCloud out;
+        tracker.paint(scan, fresh ? out : recycled);
+        tracker.list(scan);
+      }
+  };
+  work(false);
+  work(false);
+  std::size_t before = allocations;
+  work(false);
+  EXPECT_EQ(allocations, before) << "with an output that is used again";
+  before = allocations;
+  work(true);
+  EXPECT_LE(allocations, before + 10 * scans.size()) << "with fresh outputs";
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, SteadyState, testing::Values("depth", "scan_line_run", "birds_eye"),

@@ -66,7 +66,8 @@ def dataset(tmp_path_factory):
 @pytest.fixture(scope='session')
 def recorded():
     """The folder of recorded scans of SemanticKITTI."""
-    folder = pathlib.Path(os.environ.get('LIDAR_PANOPTIC_DATA', '/nowhere')) / 'semantickitti'
+    beside = pathlib.Path(__file__).resolve().parents[3] / 'shared' / 'data'
+    folder = pathlib.Path(os.environ.get('LIDAR_PANOPTIC_DATA', str(beside))) / 'semantickitti'
     if not folder.is_dir():
         pytest.skip('no recorded scans (LIDAR_PANOPTIC_DATA)')
     return folder

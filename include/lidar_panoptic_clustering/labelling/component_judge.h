@@ -24,21 +24,24 @@ StructureBias structureBiasFromName(const std::string& name);
 /// light reaches them. Nothing is learnt.
 ///
 /// Structure is what is
-/// - higher, longer or wider than any vehicle, or hovers above everything that drives or walks;
+/// - higher, longer or wider than any vehicle, hovers above everything that drives or walks, or ends below it;
 /// - as thin as a post, or as high as a pole and no longer than a man;
 /// - rough as foliage: neighbours in a scan line bend by as much as they are apart; sheet metal, clothes and walls do
-///   not. Two-wheelers and their riders do, but are small and stand on wheels;
+///   not. Two-wheelers and their riders do, and cars seen through their windows, but stand on wheels;
 /// - a wall: beams that come by where a vehicle has its gap to the ground end at its foot. A beam that meets the ground
 ///   before it gets there tells nothing, so that a car is not judged by beams that never came near its sill, which are
 ///   most where beams are far apart. A vehicle's own wheels block a quarter of its length, so half is asked for, and
-///   less where the outline is a car's;
-/// - the upper part of something tall whose foot is hidden, and too narrow for a van;
-/// - seen through gaps of what is nearer: no foot, and hardly an end beyond which the beams go farther, as at the wall
-///   behind a hedge. What stands in a street has the street behind it on one side at least.
+///   less where the outline is a car's. Columns in which something nearer stands before the foot are no witnesses:
+///   where they are four times as many as those that saw it, the foot counts as hidden;
+/// - the upper part of something tall whose foot is hidden, and too narrow for a van, or hardly anywhere free: a house
+///   over parked cars goes on on either side of them, a lorry ends;
+/// - seen through gaps of what is nearer: no gap under it, and hardly an end beyond which the beams go farther, as at
+///   the wall behind a hedge. What stands in a street has the street behind it on one side at least; what shows two
+///   sides of a car's size is no wall.
 ///
-/// In a structure a part is a person that has a person's size and height, is not rough, and stands free on both sides:
-/// beyond its outline the beams go farther. The same makes a structure of what is around a person and has nothing of a
-/// vehicle: a stall, a bench.
+/// In a structure a part is a person that has a person's size and height, is not rough, does not hang over beams that
+/// came by underneath, and stands free on both sides: beyond its outline the beams go farther. The same makes a
+/// structure of what is around a person and has nothing of a vehicle: a stall, a bench.
 class ComponentJudge
 {
 public:
@@ -65,6 +68,7 @@ private:
   {
     float most_rough;         ///< share of rough triples in an object
     float hidden_foot_width;  ///< [m] of what is tall and shows no foot: from there on it may be a van
+    float least_free_tall;    ///< share of the outline of what is tall and whose foot something hides
     float undercut, cars;     ///< least shares of undercut feet, in general and with a car's outline
     float least_free;         ///< share of a person's outline
     float least_in_front;     ///< the same of what shows no foot

@@ -20,7 +20,7 @@ struct GroundLabelerConfig
   double max_range_m = 300.0;          ///< returns beyond count as no return
   std::string field_of_view = "auto";  ///< or full_turn, sector; see SelectionConfig
   double ground_height_m = 0.15;       ///< what is lower is ground: a curb's height
-  double max_slope = 0.05;             ///< of the ground against the plane around the sensor, rise over run
+  double max_slope = 0.08;     ///< of the ground against the plane around the sensor, rise over run: of steep streets
   double link_m = 0.7;         ///< the widest gap between neighbouring returns of one thing: a car's side window
   double max_height_m = 4.2;   ///< no object is higher: 4.0 m is the limit for vehicles in most of Europe
   double max_length_m = 20.0;  ///< no object is longer: 18.75 m is the European limit for lorries with trailers

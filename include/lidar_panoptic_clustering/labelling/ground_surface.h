@@ -71,6 +71,8 @@ private:
   void votePlane();
   std::size_t fitPlane(float gate);
   void follow(const LabelledCloud& cloud, float max_slope);
+  void followTo(std::uint32_t bin, const LabelledCloud& cloud, float max_slope);
+  void refuseIslands(std::uint32_t bin);
   void bridge();
   void flatten();
   void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns);
@@ -83,5 +85,6 @@ private:
   std::vector<float> distance_;         ///< by cell: horizontal, where its ground was seen [m]
   std::vector<float> rise_;             ///< by cell: of the ground from here to the next one out, rise over run
   std::vector<float> unseen_;           ///< by cell: how far back the ground was seen last [m]; 0: here
+  std::vector<float> expected_;         ///< by sector: what the cells inside let expect of the bin in hand
 };
 }  // namespace lidar_panoptic_clustering

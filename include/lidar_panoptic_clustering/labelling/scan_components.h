@@ -21,12 +21,14 @@ struct ScanComponent
   float bottom = kFar, top = -kFar;  ///< [m] above the ground
   Footprint footprint;               ///< in bird's-eye view
 
-  bool open_top = false;  ///< goes up to the highest beams: there may be more of it above
+  bool open_top = false;  ///< goes up to the highest beam: there may be more of it above
 
   /// Columns in which a beam came by below the lowest return, where a vehicle has its gap to the ground: `blocked`
   /// beams ended at the component's foot, `undercut` ones went on underneath. A beam that met the ground before it came
   /// there tells nothing and is not counted.
   std::uint32_t blocked = 0, undercut = 0;
+  /// Columns in which another component, nearer, stands before what is below the lowest return.
+  std::uint32_t hidden = 0;
 
   /// Triples of neighbours in a scan line, and those that no smooth surface has, as foliage.
   std::uint32_t triples = 0, rough_triples = 0;
@@ -88,7 +90,7 @@ private:
             bool full_turn);
   void gatherParts(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
   void joinParts();
-  void examineTops(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, bool highest_first);
+  void examineTops(const LabelledCloud& cloud, bool highest_first);
   void examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
                    bool highest_first);
   void examineLines(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);

@@ -34,6 +34,8 @@ struct TrackedObject
   ClassIndex class_index = kUnknownClass;                         ///< voted over its life
   std::int64_t first_seen_us = 0, last_seen_us = 0;               ///< stamps
   std::uint32_t scans = 0;                                        ///< in which it was seen
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();             ///< of a point that moves with it, fixed frame [m]
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();  ///< of the position [m^2]
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();             ///< over ground, in the axes of the fixed frame [m/s]
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();  ///< of the velocity [m^2/s^2]
 };
@@ -119,6 +121,7 @@ private:
   void joinParts(const Observations& observations);
   bool isPartOf(const Observation& observation, std::uint32_t track) const;
   void learn(std::int64_t stamp_us, const Observations& observations);
+  static void tellMotion(Track& track);
   void follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin);
   void vote(std::uint32_t track, const Observation& observation);
   void dropLost(std::int64_t stamp_us);

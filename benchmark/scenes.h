@@ -1,17 +1,19 @@
+// The scenes of all benchmarks, by name; each is made when it is asked for first.
 #pragma once
 
 #include "recorded_data.h"
+#include "unordered_clouds.h"
+#include "worst_scans.h"
 
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
-#include "lidar_panoptic_clustering/pipeline/factory.h"
-#include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/projection/point_projection.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
 
-#include <benchmark/benchmark.h>
-
 #include <algorithm>
+#include <functional>
+#include <map>
 #include <memory>
+#include <stdexcept>
 #include <string>
 #include <utility>
 #include <vector>
@@ -19,13 +21,6 @@
 namespace lidar_panoptic_clustering
 {
 using Scans = std::vector<LabelledCloud>;
-constexpr std::uint32_t kCarLabel = 10, kRoadLabel = 40;
-
-inline std::shared_ptr<const ClassTable> table()
-{
-  static const auto loaded = std::make_shared<const ClassTable>(ClassTable::load("semantic_kitti"));
-  return loaded;
-}
 
 /// Every `step`-th scan of the street.
 inline Scans simulatedScans(const SensorModel& model, std::size_t count, std::size_t step = 10)
@@ -90,7 +85,7 @@ inline Scans recordedScans()
 inline ThingScan thingsOf(const LabelledCloud& cloud, const SelectionConfig& config = {})
 {
   ThingScan things;
-  selectThings(cloud, *table(), config, things);
+  selectThings(cloud, *kittiTable(), config, things);
   return things;
 }
 
@@ -98,7 +93,7 @@ inline ThingScan thingsOf(const LabelledCloud& cloud, const SelectionConfig& con
 inline Scans allThings(Scans scans)
 {
   for (auto& scan : scans)
-    for (auto& p : scan.points) p.label = kCarLabel;
+    for (auto& p : scan.points) p.label = kCar;
   return scans;
 }
 
@@ -117,81 +112,71 @@ inline Scans withThings(Scans scans, std::size_t count)
         pixels.emplace_back(things.points[i].column, row);
     std::sort(pixels.begin(), pixels.end());
     for (std::size_t k = count; k < pixels.size(); ++k)
-      scan.at(static_cast<int>(pixels[k].first), static_cast<int>(pixels[k].second)).label = kRoadLabel;
+      scan.at(static_cast<int>(pixels[k].first), static_cast<int>(pixels[k].second)).label = kRoad;
   }
   return scans;
 }
 
-/// A frame that is not in the cache, into one that was touched before: what everything is measured against. With
-/// `fresh`, into new memory.
-inline void plainCopy(benchmark::State& state, const Scans& scans, bool fresh = false)
+/// Returns and missing returns in the order of the organised cloud.
+inline RawMessage organisedMessage(const LabelledCloud& image)
 {
-  auto out = std::make_unique<LabelledCloud>();
-  std::size_t i = 0;
-  for (auto _ : state)
+  std::vector<std::uint32_t> all(image.size());
+  std::iota(all.begin(), all.end(), 0U);
+  RawMessage message = oneRow(image, all, Rings::kFromTheTop);
+  message.header.height = image.height;
+  message.header.width = image.width;
+  message.header.row_step = image.width * message.header.point_step;
+  return message;
+}
+
+/// A sensor of `rings` rings and `columns` columns with the field of view of the HDL-64E.
+inline SensorModel sensorOf(std::uint32_t rings, std::uint32_t columns)
+{
+  SensorModel model = SensorModel::load("hdl64e");
+  const float top = model.elevations_rad.front(), bottom = model.elevations_rad.back();
+  model.elevations_rad.clear();
+  for (std::uint32_t ring = 0; ring < rings; ++ring)
+    model.elevations_rad.push_back(top + (bottom - top) * static_cast<float>(ring) / static_cast<float>(rings - 1));
+  model.columns = columns;
+  return model;
+}
+
+/// The scenes there are: what a benchmark measures on, and how it is made.
+inline const std::map<std::string, std::function<Scans()>>& sceneList()
+{
+  static const auto list = []
   {
-    if (fresh) out = std::make_unique<LabelledCloud>();
-    *out = scans[i++ % scans.size()];
-    benchmark::DoNotOptimize(out->points.data());
-    benchmark::ClobberMemory();
-  }
+    std::map<std::string, std::function<Scans()>> scenes = {
+        {"street", [] { return simulatedScans(SensorModel::load("hdl64e"), 10); }},  // 26,000 things
+        {"street_128", [] { return simulatedScans(hdl128e(), 4); }},                 // 60,000
+        {"recorded", [] { return recordedScans(); }},                                // 5,000 to 10,000
+        {"ten_thousand", [] { return withThings(recordedScans(), 10000); }},
+        {"all_things", [] { return allThings(recordedScans()); }},  // 114,000
+        {"street_all_things", [] { return allThings(simulatedScans(SensorModel::load("hdl64e"), 4)); }},
+        {"street_128_all_things", [] { return allThings(simulatedScans(hdl128e(), 4)); }},  // 249,000
+    };
+    for (const auto& worst : worstScans())
+      scenes["worst/" + worst.name] = [worst] { return Scans{worst.build(64, 2048)}; };
+    for (const std::uint32_t rings : {8U, 16U, 32U, 64U, 128U, 256U})
+      for (const bool all : {false, true})
+        scenes[(all ? "size_all_things/" : "size/") + std::to_string(rings)] = [rings, all]
+        {
+          Scans scans = simulatedScans(sensorOf(rings, 16 * rings), 2, 60);
+          return all ? allThings(std::move(scans)) : scans;
+        };
+    return scenes;
+  }();
+  return list;
 }
 
-inline void setThings(benchmark::State& state, std::size_t found)
+/// A scene by name, the same object each time. Without recorded scans it is empty where it is made of them.
+inline const Scans& scene(const std::string& name)
 {
-  state.counters["things"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
-}
-
-/// Clustering alone.
-inline void cluster(benchmark::State& state, const Scans& scans, const std::string& algorithm)
-{
-  const Algorithm made = makeAlgorithm(algorithm);
-  std::vector<ThingScan> things;
-  for (const auto& scan : scans) things.push_back(thingsOf(scan, made.pipeline.selection));
-  std::vector<std::uint32_t> component;
-  std::size_t i = 0, found = 0;
-  for (auto _ : state)
-  {
-    const ThingScan& scan = things[i++ % things.size()];
-    made.clusterer->cluster(scan, component);
-    found += scan.size();
-  }
-  setThings(state, found);
-}
-
-/// Organised labelled cloud in, panoptic cloud out: one that was written before, or with `fresh`, new memory each time.
-inline void pipeline(benchmark::State& state, const Scans& scans, const std::string& algorithm, bool fresh = false)
-{
-  Algorithm made = makeAlgorithm(algorithm);
-  FramePipeline frames(table(), made.pipeline, std::move(made.clusterer));
-  auto out = std::make_unique<PanopticCloud>();
-  std::size_t i = 0, found = 0;
-  for (auto _ : state)
-  {
-    const LabelledCloud& scan = scans[i++ % scans.size()];
-    if (fresh) out = std::make_unique<PanopticCloud>();
-    frames.segment(scan);
-    frames.paint(scan, *out);
-    found += frames.things().size();
-  }
-  setThings(state, found);
-}
-
-template <class Body>
-void add(const std::string& name, const Body& body)
-{
-  benchmark::RegisterBenchmark(name.c_str(), body)->Unit(benchmark::kMillisecond);
-}
-
-/// The whole of main(): reads Google Benchmark's options, lets `add_all` add what there is to measure and keep the
-/// scans it needs in the object it returns, and runs it. Exit status 2 for an option nobody knows.
-template <class AddAll>
-int runBenchmarks(int argc, char** argv, AddAll add_all)
-{
-  benchmark::Initialize(&argc, argv);
-  if (benchmark::ReportUnrecognizedArguments(argc, argv)) return 2;
-  [[maybe_unused]] const auto kept = add_all();
-  benchmark::RunSpecifiedBenchmarks();
-  return 0;
+  static std::map<std::string, Scans> made;
+  const auto known = sceneList().find(name);
+  if (known == sceneList().end()) throw std::invalid_argument("there is no scene '" + name + "'");
+  const auto [at, is_new] = made.try_emplace(name);
+  if (is_new) at->second = known->second();
+  return at->second;
 }
 }  // namespace lidar_panoptic_clustering
