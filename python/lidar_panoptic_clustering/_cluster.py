@@ -34,8 +34,8 @@ class Outcome(NamedTuple):
 class _Flight:
     """A part on its way: the tasks begun for it, of which the first to end counts."""
 
-    def __init__(self, order: int, part: Part) -> None:
-        self.order, self.part = order, part
+    def __init__(self, order: int, part: Part, alone: bool) -> None:
+        self.order, self.part, self.alone = order, part, alone
         self.futures: Dict[str, Any] = {}
         self.begun = 0
         self.since = time.monotonic()
@@ -48,10 +48,11 @@ class Run:
         client: of ``distributed``.
         name: of the tasks, on the dashboard.
         work: what the tasks have in common.
-        keep_going: a part that ends its worker is divided until the scan is found, which is then skipped.
+        keep_going: a scan that ends its workers is skipped; else it ends the run. To find it, parts are divided.
         patience_s: after which a part is begun once more elsewhere; none: 20 times the usual, and at least a minute.
         take: is given each part's result, once, in any order.
         skip: is given the name of a scan that could not be used, and why.
+        name_of: the name of a sequence's scan, from 0.
     """
 
     def __init__(
@@ -63,13 +64,15 @@ class Run:
         patience_s: Optional[float],
         take: Callable[[Dict[str, Any]], None],
         skip: Callable[[str, str], None],
+        name_of: Callable[[str, int], str],
     ) -> None:
         self._client, self._name, self._work, self._keep_going = client, name, work, keep_going
-        self._patience_s, self._take, self._skip = patience_s, take, skip
+        self._patience_s, self._take, self._skip, self._name_of = patience_s, take, skip, name_of
         self._id = uuid.uuid4().hex[:8]
         self._flights: Dict[int, _Flight] = {}
         self._ended: "queue.Queue[Tuple[int, str]]" = queue.Queue()
         self._again: List[Part] = []
+        self._suspects: List[Part] = []  # of one scan: it, or what was on the same worker, ended the worker
         self._order = 0
         self._window = 1
         self._looked = 0.0
@@ -129,9 +132,12 @@ class Run:
         begun = []
         while len(self._flights) < self._window:
             upcoming = [self._again.pop()] if self._again else list(itertools.islice(parts, 1))
+            alone = not upcoming and not self._flights and bool(self._suspects)
+            if alone:
+                upcoming = [self._suspects.pop(0)]
             if not upcoming:
                 break
-            flight = _Flight(self._order, upcoming[0])
+            flight = _Flight(self._order, upcoming[0], alone)
             self._order += 1
             self._flights[flight.order] = flight
             begun.append(flight)
@@ -221,17 +227,19 @@ class Run:
             self._fail(flight.order, str(error))
 
     def _divide(self, flight: _Flight, reason: str, progress: Progress) -> None:
-        """What to do with a part that no worker ends."""
+        """What to do with a part that no worker ends: a scan is only found guilty where nothing ran beside it."""
         part = flight.part
-        if not self._keep_going:
-            self._fail(flight.order, reason)
-        elif part.end - part.begin > 1 and not self._work.track:
+        if part.end - part.begin > 1 and not self._work.track:
             progress.note(f"divided: {reason}")
-            self._again.extend(reversed(halves(part)))
-        else:
+            self._again.extend(reversed(halves(part, self._name_of)))
+        elif not flight.alone:
+            self._suspects.append(part)
+        elif self._keep_going:
             progress.note(f"skipped {reason}")
             self._skip(f"{part.sequence}/{part.name}", reason)
             progress.step(part.end - part.begin)
+        else:
+            self._fail(flight.order, reason)
 
     def _begin_again(self, progress: Progress) -> None:
         """A part that its worker does not end is given to another one too: the machine may be gone, or its disk."""

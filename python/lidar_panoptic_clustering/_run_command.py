@@ -158,6 +158,11 @@ def run_parts(
         numbers["skipped"] += 1
         skip(scan, reason)
 
+    def name_of(sequence: str, scan: int) -> str:
+        from . import _core
+
+        return str(_core.SequenceBenchmark(plan, sequence).scan_name(scan))
+
     if given.scheduler and (given.workers or given.dashboard):
         raise ValueError("--scheduler excludes --workers and --dashboard: these are of this machine's own cluster")
     workers = given.workers or len(os.sched_getaffinity(0))
@@ -169,7 +174,7 @@ def run_parts(
         if given.dashboard:
             print(f"dashboard: {client.dashboard_link}", file=sys.stderr)
         progress = Progress(name, sum(counts.scans.values()))
-        run = Run(client, name, work, plan.keep_going, given.patience, taken, skipped)
+        run = Run(client, name, work, plan.keep_going, given.patience, taken, skipped, name_of)
         parts = parts_of(plan, counts.scans, given.scans_per_task)
         outcome = run.run(parts, progress, lambda: received() != 0)
         progress.finish()

@@ -1,7 +1,7 @@
 """What runs on a cluster's workers. Nothing here needs Dask, and the driver's arguments are all it knows."""
 
 import threading
-from typing import Any, Dict, List, NamedTuple, Optional, Tuple
+from typing import Any, Callable, Dict, List, NamedTuple, Optional, Tuple
 
 _cache = threading.local()
 
@@ -68,10 +68,10 @@ def describe_part(part: Part) -> str:
     return f"{part.sequence}/{part.name}" if count == 1 else f"{count} scans from {part.sequence}/{part.name} on"
 
 
-def halves(part: Part) -> List[Part]:
-    """Of a part of two scans or more; the second one's name is not known and says so."""
+def halves(part: Part, name_of: Callable[[str, int], str]) -> List[Part]:
+    """Of a part of two scans or more. ``name_of``: a sequence's scan."""
     middle = (part.begin + part.end) // 2
     return [
         Part(part.sequence, part.begin, middle, part.name),
-        Part(part.sequence, middle, part.end, f"scan number {middle}"),
+        Part(part.sequence, middle, part.end, name_of(part.sequence, middle)),
     ]

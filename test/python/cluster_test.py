@@ -99,7 +99,8 @@ def workers_of(process):
 
 @pytest.mark.parametrize('workers', [1, 2])
 def test_the_same_as_panoptic_benchmark(data, tmp_path, benchmark, workers):
-    table = benchmark('--dataset', data, '--columns', 512, '--report', tmp_path / 'cpp.json', '--output', tmp_path / 'a')
+    table = benchmark('--dataset', data, '--columns', 512, '--report', tmp_path / 'cpp.json',
+                      '--output', tmp_path / 'a')
     status, out, err = run('benchmark', '--dataset', data, '--columns', 512, '--report', 'r.json', '--workers', workers,
                            '--scans-per-task', 7, '--output', 'b', cwd=tmp_path)
     assert status == 0, err
@@ -122,9 +123,11 @@ def test_tracked_sequences_are_tasks(data, tmp_path, benchmark):
 
 
 def test_recorded_scans(recorded, tmp_path, benchmark):
-    options = ['--dataset', recorded, '--semantics', recorded / 'predictions/mininet', '--algorithms', 'depth,birds_eye']
+    options = ['--dataset', recorded, '--semantics', recorded / 'predictions/mininet',
+               '--algorithms', 'depth,birds_eye']
     benchmark(*options, '--report', tmp_path / 'cpp.json')
-    status, _, err = run('benchmark', *options, '--report', 'r.json', '--workers', 2, '--scans-per-task', 4, cwd=tmp_path)
+    status, _, err = run('benchmark', *options, '--report', 'r.json', '--workers', 2, '--scans-per-task', 4,
+                         cwd=tmp_path)
     assert status == 0, err
     assert quality(tmp_path / 'r.json') == quality(tmp_path / 'cpp.json')
 
@@ -191,7 +194,8 @@ def test_a_scan_that_cannot_be_read(data, tmp_path, benchmark):
     wrong = data / 'sequences/08/velodyne/000004.bin'
     wrong.write_bytes(b'half a point')
     options = ['--dataset', data, '--columns', 512, '--algorithms', 'depth']
-    status, out, err = run('benchmark', *options, '--workers', 2, '--scans-per-task', 3, '--report', 'r.json', cwd=tmp_path)
+    status, out, err = run('benchmark', *options, '--workers', 2, '--scans-per-task', 3, '--report', 'r.json',
+                           cwd=tmp_path)
     assert status == 1
     assert '03/velodyne/000011.bin' in err and 'Traceback' not in err, 'the first one is named'
     assert not (tmp_path / 'r.json').exists() and not (tmp_path / 'r.json.part').exists()
@@ -200,6 +204,39 @@ def test_a_scan_that_cannot_be_read(data, tmp_path, benchmark):
     assert status == 0, err
     assert 'skipped 03/000011' in err
     assert quality(tmp_path / 'r.json') == quality(tmp_path / 'cpp.json')
+
+
+@pytest.mark.parametrize('keep_going', [True, False])
+def test_a_scan_that_kills_its_workers(keep_going):
+    """Its task is divided until it is found."""
+    import dask
+
+    from lidar_panoptic_clustering import _cluster
+    from lidar_panoptic_clustering._connect import Cluster, connect
+    from lidar_panoptic_clustering._progress import Progress
+    from lidar_panoptic_clustering._tasks import Part, Work
+
+    def run_part(_, part):
+        if part.begin <= 5 < part.end:
+            os.kill(os.getpid(), signal.SIGKILL)
+        return {'used': part.end - part.begin, 'resumed': 0, 'skipped': [], 'report': b''}
+
+    taken, skipped = [], []
+    parts = [Part('00', 0, 4, '000000'), Part('00', 4, 8, '000004'), Part('00', 8, 9, '000008')]
+    with dask.config.set({'distributed.scheduler.allowed-failures': 0}), pytest.MonkeyPatch.context() as patch, \
+            connect(Cluster(None, None, 2, None, 60.0)) as client:
+        patch.setattr(_cluster, 'run_part', run_part)
+        run_all = _cluster.Run(client, 'test', Work((), True, ''), keep_going, None, taken.append,
+                               lambda scan, reason: skipped.append((scan, reason)), lambda _, scan: f'{scan:06}')
+        outcome = run_all.run(iter(parts), Progress('test', 9), lambda: False)
+    if keep_going:
+        assert outcome == (False, False, None)
+        assert sum(result['used'] for result in taken) == 8
+        assert [scan for scan, _ in skipped] == ['00/000005']
+        assert 'each worker that was given it ended' in skipped[0][1]
+    else:
+        assert outcome.interrupted and outcome.failure.startswith('00/000005: each worker that was given it ended')
+        assert not skipped
 
 
 def test_labelling_goes_on_where_it_stopped(data, tmp_path, benchmark):
@@ -248,8 +285,8 @@ def test_ten_thousand_scans_keep_memory_flat(tmp_path):
     for number in range(1, 10000):
         for name, ending in (('velodyne', 'bin'), ('labels', 'label')):
             os.symlink(folder / name / f'000000.{ending}', folder / name / f'{number:06}.{ending}')
-    process = start('benchmark', '--dataset', tmp_path / 'data', '--algorithms', 'depth', '--columns', 64, '--workers', 2,
-                    '--report', 'r.json', cwd=tmp_path)
+    process = start('benchmark', '--dataset', tmp_path / 'data', '--algorithms', 'depth', '--columns', 64,
+                    '--workers', 2, '--report', 'r.json', cwd=tmp_path)
     samples = []
     lines = []
     for line in process.stderr:
@@ -300,7 +337,8 @@ class TestOfAScheduler:
         assert quality(tmp_path / 'r.json') == quality(tmp_path / 'cpp.json')
 
     def test_without_a_worker(self, data, tmp_path, scheduler):
-        status, _, err = run('benchmark', '--dataset', data, '--scheduler-file', scheduler[1], '--wait', 1, cwd=tmp_path)
+        status, _, err = run('benchmark', '--dataset', data, '--scheduler-file', scheduler[1], '--wait', 1,
+                             cwd=tmp_path)
         assert status == 1
         assert 'has no worker after 1 s; one is started by' in err and 'Traceback' not in err
 
@@ -333,7 +371,8 @@ class TestOfAScheduler:
     def test_a_scheduler_that_dies(self, data, tmp_path, scheduler):
         worker = self.worker(scheduler[1], tmp_path)
         try:
-            process = start('benchmark', *slow_scans(data), '--scans-per-task', 2, '--output', 'out', '--scheduler-file', scheduler[1], '--patience', 5, '--report', 'r.json', cwd=tmp_path)
+            process = start('benchmark', *slow_scans(data), '--scans-per-task', 2, '--output', 'out',
+                            '--scheduler-file', scheduler[1], '--patience', 5, '--report', 'r.json', cwd=tmp_path)
             wait_for(lambda: len(files(tmp_path / 'out')) > 20)
             scheduler[0].kill()
             out, err = process.communicate(timeout=120)
@@ -360,7 +399,7 @@ def test_a_scheduler_that_never_was(data, tmp_path):
     (['benchmark', '--dataset', 'data', '--report', 'no/such/r.json'], 'no/such/r.json'),
     (['label', '--dataset', 'data'], '--output is missing'),
     (['label', '--dataset', 'data', '--output', 'o', '--algorithms', 'depth,euclidean'], 'one algorithm'),
-    (['benchmark', '--dataset', 'data', '--scheduler', 'tcp://a:1', '--workers', '2'], '--scheduler excludes --workers'),
+    (['benchmark', '--dataset', 'data', '--scheduler', 'tcp://a:1', '--workers', '2'], 'excludes --workers'),
 ])
 def test_wrong_command_lines(data, tmp_path, arguments, part):
     status, out, err = run(arguments[0], *arguments[1:], cwd=tmp_path)
