@@ -70,6 +70,7 @@ LineChart::Series guide(const LineChart::Series& series)
 {
   LineChart::Series line;
   line.name = "n log n";
+  line.rgb = 0x999999;
   line.markers = false;
   const LineChart::Point first = series.points[1];
   for (double things = first.x; things < 1.2e6; things *= 2.0)

@@ -33,7 +33,8 @@ int windowOf(const ThingPoint& p, float distance, float column_angle, int max_wi
   return columns < static_cast<float>(max_window) ? static_cast<int>(columns) + 1 : max_window;
 }
 
-constexpr std::size_t kBudget = 8;  // comparisons a point of two lines before they are compared point by point
+constexpr std::uint32_t kManyPoints = 256;  // of a line; where their runs are short too, runs save nothing
+constexpr std::size_t kBudget = 8;          // comparisons a point of two lines before they are compared point by point
 }  // namespace
 
 ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : config_(config)
@@ -133,7 +134,11 @@ void ScanLineRunClusterer::joinOverTheWrap()
 void ScanLineRunClusterer::linkLines(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn)
 {
   if (slot_run_[upper_slot] == slot_run_[upper_slot + 1] || slot_run_[lower_slot] == slot_run_[lower_slot + 1]) return;
-  if (!linkRuns(upper_slot, lower_slot, turn)) linkPoints(upper_slot, lower_slot, turn);
+  const auto areShort = [this](std::uint32_t slot)
+  { return 2 * (slot_run_[slot + 1] - slot_run_[slot]) > slot_begin_[slot + 1] - slot_begin_[slot]; };
+  const bool is_dense = slot_begin_[lower_slot + 1] - slot_begin_[lower_slot] > kManyPoints;
+  if ((is_dense && areShort(upper_slot) && areShort(lower_slot)) || !linkRuns(upper_slot, lower_slot, turn))
+    linkPoints(upper_slot, lower_slot, turn);
 }
 
 /// Run by run; false when that took more comparisons than is usual and was not ended.

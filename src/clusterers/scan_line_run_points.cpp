@@ -93,7 +93,8 @@ void ScanLineRunClusterer::sortByRange(std::uint32_t slot)
   for (std::size_t layer = 0; layer + 1 < layer_begin_.size(); ++layer)
   {
     layer_begin_[layer + 1] += layer_begin_[layer];
-    lower_.layers.push_back({layer_begin_[layer], layer_begin_[layer], kFar, -kFar, kFar, -kFar, 0, 0});
+    const std::uint32_t at = layer_begin_[layer];
+    lower_.layers.push_back({at, at, kFar, -kFar, kFar, -kFar, at, at, at, at});
   }
   for (auto* coordinate : {&lower_.x, &lower_.y, &lower_.z})
     coordinate->assign(size + kBlock, kFar);  // see linkLayer()
@@ -113,7 +114,6 @@ void ScanLineRunClusterer::sortByRange(std::uint32_t slot)
     lower_.column[to] = q.column;
     lower_.point[to] = begin + k;
   }
-  for (Layer& layer : lower_.layers) layer.same_begin = layer.same_end = layer.begin;
 }
 
 void ScanLineRunClusterer::linkPoint(const Point& p, int shift)
@@ -135,16 +135,25 @@ void ScanLineRunClusterer::linkPoint(const Point& p, int shift)
 }
 
 /// Joins p with the close ones of a layer; `object` is that of p. Those known to be of one object are passed over where
-/// it is p's: from point to point of the upper line the window moves on by a few.
+/// it is p's.
 void ScanLineRunClusterer::linkLayer(const Point& p, int shift, Layer& layer, std::uint32_t& object)
 {
-  const auto columns = lower_.column.begin();
-  const auto left = std::lower_bound(columns + layer.begin, columns + layer.end, p.column - p.window - shift);
-  const auto right = std::lower_bound(left, columns + layer.end, p.column + p.window + 1 - shift);
-  const auto from = static_cast<std::uint32_t>(left - columns), to = static_cast<std::uint32_t>(right - columns);
+  const int left = p.column - p.window - shift, right = p.column + p.window + 1 - shift;
+  std::uint32_t from = layer.from, to = layer.to;
+  if (shift == 0)  // from one point of the upper line to the next the window moves on by a few
+  {
+    from = layer.from = moveTo(left, layer, from);
+    to = layer.to = moveTo(right, layer, to);
+  }
+  else
+  {
+    const auto columns = lower_.column.begin();
+    from = static_cast<std::uint32_t>(std::lower_bound(columns + layer.begin, columns + layer.end, left) - columns);
+    to = static_cast<std::uint32_t>(std::lower_bound(columns + from, columns + layer.end, right) - columns);
+  }
   if (from == to) return;
   const bool is_known = layer.same_begin < layer.same_end && from <= layer.same_end && to >= layer.same_begin &&
-                        sets_.find(run_of_thing_[points_[lower_.point[layer.same_begin]].thing]) == object;
+                        sets_.find(lower_.object[layer.same_begin]) == object;
   bool all = true;
   if (is_known)
   {
@@ -158,6 +167,14 @@ void ScanLineRunClusterer::linkLayer(const Point& p, int shift, Layer& layer, st
   if (!all) return;
   layer.same_begin = is_known ? std::min(layer.same_begin, from) : from;
   layer.same_end = is_known ? std::max(layer.same_end, to) : to;
+}
+
+/// The first point of a layer at or right of `column`, looked for from point `k` on, either way.
+std::uint32_t ScanLineRunClusterer::moveTo(int column, const Layer& layer, std::uint32_t k) const
+{
+  while (k > layer.begin && lower_.column[k - 1] >= column) --k;
+  while (k < layer.end && lower_.column[k] < column) ++k;
+  return k;
 }
 
 /// Joins p with the close ones among [from, to) of lower_. Returns whether all of these are known to be of p's object

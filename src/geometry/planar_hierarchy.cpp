@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/geometry/planar_hierarchy.h"
 
+#include "geometry/z_curve.h"
+
 #include <algorithm>
 #include <numeric>
 #include <stdexcept>
@@ -11,46 +13,6 @@ namespace
 {
 constexpr float kSideInDiagonals = 0.7071F;  // below sqrt(1/2): two points of a cell are closer than its diagonal
 constexpr std::size_t kFew = 48;             // points that are sorted faster by comparison
-constexpr std::uint32_t kSpread[8] = {0, 1, 4, 5, 16, 17, 20, 21};  // the bits of a number, every second one
-
-constexpr std::uint8_t bitsOf(unsigned byte)
-{
-  return static_cast<std::uint8_t>(byte == 0 ? 0 : (byte & 1U) + bitsOf(byte >> 1U));
-}
-struct BitCounts
-{
-  std::uint8_t of[256];
-};
-constexpr BitCounts makeBitCounts()
-{
-  BitCounts counts{};
-  for (unsigned byte = 0; byte < 256; ++byte) counts.of[byte] = bitsOf(byte);
-  return counts;
-}
-constexpr BitCounts kBitCounts = makeBitCounts();
-
-/// Place along the Z-curve of column x and row y < 8.
-std::uint32_t alongCurve(std::uint32_t x, std::uint32_t y)
-{
-  return kSpread[x] | kSpread[y] << 1U;
-}
-
-struct CurvePlace
-{
-  std::uint8_t x, y;
-};
-struct Curve
-{
-  CurvePlace of[64];
-};
-constexpr Curve makeCurve()
-{
-  Curve curve{};
-  for (std::uint8_t y = 0; y < 8; ++y)
-    for (std::uint8_t x = 0; x < 8; ++x) curve.of[kSpread[x] | kSpread[y] << 1U] = {x, y};
-  return curve;
-}
-constexpr Curve kCurve = makeCurve();  // the column and row of each place along it
 
 /// std::floor is a call to the C library on processors without SSE 4.1.
 std::int32_t floorToInt(float value)
@@ -131,7 +93,19 @@ void PlanarHierarchy::sortIntoCells()
     std::sort(entries_.begin(), entries_.end());
   else
     sortBySteps(bits);
-  for (const std::uint64_t entry : entries_) placeRun(static_cast<std::uint32_t>(entry));
+  constexpr std::size_t kAhead = 12;  // the points lie anywhere: their way into the cache begins that many runs before
+  for (std::size_t k = 0; k < entries_.size(); ++k)
+  {
+    if (k + 2 * kAhead < entries_.size())
+      __builtin_prefetch(&runs_[static_cast<std::uint32_t>(entries_[k + 2 * kAhead])]);
+    if (k + kAhead < entries_.size())
+    {
+      const std::uint32_t begin = runs_[static_cast<std::uint32_t>(entries_[k + kAhead])].begin;
+      __builtin_prefetch(&added_[begin]);
+      __builtin_prefetch(&cell_of_added_[begin], 1);
+    }
+    placeRun(static_cast<std::uint32_t>(entries_[k]));
+  }
 }
 
 /// Sorts entries_ by the `bits` from bit 32 on, a digit after the other; what is equal keeps its order.

@@ -76,6 +76,7 @@ private:
     std::uint32_t begin, end;
     float min_range, max_range, min_z, max_z;  ///< [m]
     std::uint32_t same_begin, same_end;        ///< of these it is known that they are of one object
+    std::uint32_t from, to;                    ///< the window of the point looked at last
   };
 
   void sortByLink(const ThingScan& scan);
@@ -88,6 +89,7 @@ private:
   void sortByRange(std::uint32_t slot);
   void linkPoint(const Point& p, int shift);
   void linkLayer(const Point& p, int shift, Layer& layer, std::uint32_t& object);
+  std::uint32_t moveTo(int column, const Layer& layer, std::uint32_t k) const;
   bool linkRange(const Point& p, int shift, std::uint32_t from, std::uint32_t to, std::uint32_t& object);
   bool linkBlock(const Point& p, int shift, std::uint32_t begin, std::uint32_t end, std::uint32_t& object);
 
