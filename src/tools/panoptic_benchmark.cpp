@@ -59,7 +59,10 @@ Options describeOptions()
   options.add_options()("output", textValue("DIR"),
                         "write ROW/sequences/SS/predictions/NNNNNN.label; a later run goes on where this one stops");
   options.add_options()("report", textValue("FILE.json"), "write all figures and what is needed to merge them");
-  options.add_options()("plot", textValue("DIR"), "write charts, and a figure of each sequence's worst scan");
+  options.add_options()(
+      "plot", textValue("DIR"),
+      "write charts, and a figure of each sequence's worst scan; with --labels none figures of the ten worst "
+      "scans, truth beside result, with the objects that were lost or merged marked");
   options.add_options()("class-table", textValue("FILE"),
                         "YAML file, or the name of a table that ships with the package (default: semantic_kitti)");
   options.add_options()(
@@ -175,7 +178,7 @@ void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
 /// Exit status.
 int runWithoutLabels(const Given& given)
 {
-  for (const char* option : {"semantics", "survey", "switches", "report", "plot", "merge", "keep-going"})
+  for (const char* option : {"semantics", "survey", "switches", "report", "merge", "keep-going"})
     if (isGiven(given, option))
       throw std::invalid_argument("--labels none and --" + std::string(option) + " exclude each other");
   BenchmarkSettings settings = readSettings(given);
@@ -185,6 +188,7 @@ int runWithoutLabels(const Given& given)
   without.keep_rings = numberOf(given, "keep-rings", 1, 64);
   without.shuffle = isGiven(given, "shuffle");
   without.structure = textOf(given, "structure");
+  without.plot = textOf(given, "plot");
   noteInterrupts();
   RunWithoutLabels benchmark(settings, without,
                              std::make_shared<const ClassTable>(ClassTable::load(settings.class_table)));
