@@ -38,9 +38,9 @@ def build(name, *arguments):
     return folder
 
 
-def range_to_scene(azimuth, elevation):
+def range_to_scene(azimuth, elevation, walls):
     """The distance from a lidar 1.73 m above a street to a box of 4 x 2 x 1.5 m at (10, 3) m, or to what is behind it:
-    flat ground, and walls 25 m to the left and the right."""
+    flat ground and, where asked for, walls 25 m to the left and the right."""
     direction = (math.cos(elevation) * math.cos(azimuth), math.cos(elevation) * math.sin(azimuth), math.sin(elevation))
     near, far = 0.0, math.inf
     for d, low, high in zip(direction, (8.0, 2.0, -1.73), (12.0, 4.0, -0.23)):
@@ -49,18 +49,18 @@ def range_to_scene(azimuth, elevation):
     if near < far:
         return near
     ground = -1.73 / direction[2] if direction[2] < 0.0 else math.inf
-    behind = min(ground, 25.0 / abs(direction[1]) if direction[1] else math.inf)
+    behind = min(ground, 25.0 / abs(direction[1]) if walls and direction[1] else math.inf)
     return behind if behind < 80.0 else None
 
 
-def write_scan(path):
+def write_scan(path, walls):
     """A scan of that scene as KITTI stores it: ring after ring, the highest first, float32 x y z intensity."""
     with open(path, 'wb') as file:
         for ring in range(64):
             elevation = math.radians(2.0 - 26.8 * ring / 63.0)
             for firing in range(1500):
                 azimuth = 2.0 * math.pi * firing / 1500.0
-                distance = range_to_scene(azimuth, elevation)
+                distance = range_to_scene(azimuth, elevation, walls)
                 if distance is not None:
                     flat = distance * math.cos(elevation)
                     file.write(struct.pack('<4f', flat * math.cos(azimuth), flat * math.sin(azimuth),
@@ -71,7 +71,12 @@ class WithoutRos(unittest.TestCase):
     def test_prints_the_object_of_a_scan(self):
         folder = build('without_ros')
         scan = folder / 'scan.bin'
-        write_scan(scan)
+        for walls in (True, False):  # without them nothing is as high as the sensor
+            with self.subTest(walls=walls):
+                self.check_scan(folder, scan, walls)
+
+    def check_scan(self, folder, scan, walls):
+        write_scan(scan, walls)
         printed = run(folder / 'scan_objects', scan)
         points = re.match(r'(\d+) points, \d+ objects\n', printed)
         self.assertTrue(points and int(points.group(1)) * 16 == scan.stat().st_size, printed)

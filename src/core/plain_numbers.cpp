@@ -1,6 +1,7 @@
 #include "core/plain_numbers.h"
 
 #include <cmath>
+#include <cstdarg>
 #include <cstdio>
 #include <cstdlib>
 #include <limits>
@@ -37,6 +38,17 @@ std::string fixedText(double value, int decimals)
 std::string shortText(double value, int digits)
 {
   return print("%.*g", digits, value);
+}
+
+void appendText(std::string& out, const char* format, ...)
+{
+  const PlainNumbers plain;
+  char line[256];
+  va_list arguments;
+  va_start(arguments, format);
+  std::vsnprintf(line, sizeof line, format, arguments);
+  va_end(arguments);
+  out += line;
 }
 
 std::optional<double> parseNumber(const std::string& text)

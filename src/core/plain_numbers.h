@@ -26,6 +26,9 @@ std::string fixedText(double value, int decimals);
 /// As printf's "%.*g", without the locale; 17 digits read back as the same number.
 std::string shortText(double value, int digits = 6);
 
+/// Appends what printf writes, without the locale; what is beyond 255 characters is cut off.
+__attribute__((format(printf, 2, 3))) void appendText(std::string& out, const char* format, ...);
+
 /// The number that the whole text is, by C's rules and without the locale; nothing for text that is none, for one out
 /// of range, and for "nan" and "inf".
 std::optional<double> parseNumber(const std::string& text);

@@ -85,7 +85,23 @@ void ObjectRecall::addScan(const RecallScan& scan)
   countGround(scan);
   judgeObjects();
   judgeSegments();
+  countFlips(scan.follows);
   ++scan_count_;
+}
+
+void ObjectRecall::countFlips(bool follows)
+{
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> is_found;
+  for (const RecalledObject& object : objects_)
+  {
+    const std::pair<std::uint32_t, std::uint32_t> key(object.class_id, object.instance);
+    is_found[key] = object.outcome == RecallOutcome::kFound;
+    const auto before = was_found_.find(key);
+    if (!follows || before == was_found_.end()) continue;
+    ++shown_twice_;
+    flips_ += before->second != is_found[key] ? 1U : 0U;
+  }
+  was_found_ = std::move(is_found);
 }
 
 void ObjectRecall::countPairs(const RecallScan& scan)
@@ -211,6 +227,7 @@ ObjectRecall& ObjectRecall::operator+=(const ObjectRecall& other)
   ground_.both += other.ground_.both, ground_.found += other.ground_.found, ground_.truth += other.ground_.truth;
   scan_count_ += other.scan_count_;
   false_segments_ += other.false_segments_, false_points_ += other.false_points_;
+  shown_twice_ += other.shown_twice_, flips_ += other.flips_;
   over_ += other.over_, under_ += other.under_;
   return *this;
 }

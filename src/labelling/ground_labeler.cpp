@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <stdexcept>
 #include <string>
@@ -15,6 +16,9 @@ namespace
 {
 // [m] a step in a surface, above the noise of two ranges (three sigma of 3 cm each)
 constexpr float kStep = 0.13F;
+
+/// What a pixel shows: places in the table of raw ids.
+constexpr unsigned char kIgnored = 0, kGround = 1, kStructure = 2, kObject = 3;
 
 const GroundLabelerConfig& validated(const GroundLabelerConfig& config)
 {
@@ -30,7 +34,8 @@ GroundLabeler::GroundLabeler(const GroundLabelerConfig& config)
 {
   const ClassTable table = ClassTable::load("object");
   const auto id = [&table](const char* name) { return table[table.findByName(name)].ids.at(0); };
-  ignored_ = id("ignored"), ground_ = id("ground"), structure_ = id("structure"), object_ = id("object");
+  ids_[kIgnored] = id("ignored"), ids_[kGround] = id("ground");
+  ids_[kStructure] = id("structure"), ids_[kObject] = id("object");
 }
 
 void GroundLabeler::label(LabelledCloud& cloud)
@@ -45,12 +50,12 @@ void GroundLabeler::label(LabelledCloud& cloud)
   const bool closed = closesOnItself(config_.field_of_view, measureColumnAngle(cloud, max_range), cloud.width);
   components_.find(cloud, returns_, {above, kStep, static_cast<float>(config_.link_m)}, closed);
   judge();
+  shown_.resize(cloud.points.size());
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
   {
     const std::uint32_t part = components_.partOf(i);
-    cloud.points[i].label = part != ScanComponents::kNone ? label_of_part_[part]
-                            : returns_[i].isReturn()      ? ground_
-                                                          : ignored_;
+    shown_[i] = part != ScanComponents::kNone ? shown_of_part_[part] : returns_[i].isReturn() ? kGround : kIgnored;
+    cloud.points[i].label = ids_[shown_[i]];
   }
 }
 
@@ -59,20 +64,20 @@ void GroundLabeler::judge()
 {
   const auto& parts = components_.parts();
   const auto& components = components_.list();
-  label_of_component_.clear();
-  for (const ScanComponent& c : components) label_of_component_.push_back(judge_.isStructure(c) ? structure_ : object_);
-  label_of_part_.assign(parts.size(), ignored_);
+  shown_of_component_.clear();
+  for (const ScanComponent& c : components) shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
+  shown_of_part_.assign(parts.size(), kIgnored);
   for (std::uint32_t part = 0; part < parts.size(); ++part)
   {
     const std::uint32_t component = components_.componentOfPart()[part];
     if (!judge_.isPerson(parts[part])) continue;
-    label_of_part_[part] = object_;
+    shown_of_part_[part] = kObject;
     const bool is_most = 3 * parts[part].point_count > 2 * components[component].point_count;
-    if (!is_most && !judge_.isVehicle(components[component])) label_of_component_[component] = structure_;
+    if (!is_most && !judge_.isVehicle(components[component])) shown_of_component_[component] = kStructure;
   }
   for (std::uint32_t part = 0; part < parts.size(); ++part)
-    if (label_of_part_[part] == ignored_)
-      label_of_part_[part] = label_of_component_[components_.componentOfPart()[part]];
+    if (shown_of_part_[part] == kIgnored)
+      shown_of_part_[part] = shown_of_component_[components_.componentOfPart()[part]];
 }
 
 void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels)
@@ -80,6 +85,11 @@ void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::ve
   OrganizedScan& view = view_.of(points);
   label(view.image.cloud);
   labelPoints(view, labels);
+}
+
+float GroundLabeler::heightOf(float x, float y, float z) const
+{
+  return found_ground_ ? surface_.heightOf(x, y, z) : std::numeric_limits<float>::quiet_NaN();
 }
 
 GroundReport GroundLabeler::ground() const
@@ -98,29 +108,38 @@ void GroundLabeler::labelPoints(const OrganizedScan& scan, std::vector<std::uint
   {
     const std::uint32_t pixel = scan.image.pixel_of_point[i];
     const bool is_shown = scan.organized_input || scan.image.owner_of_pixel[pixel] == i;
-    labels[i] = is_shown ? scan.image.cloud.points[pixel].label : hiddenLabel(scan.points[i], scan.image.cloud, pixel);
+    labels[i] = ids_[is_shown ? shown_[pixel] : hidden(scan.points[i], scan.image.cloud, pixel)];
   }
 }
 
-std::uint32_t GroundLabeler::hiddenLabel(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const
+unsigned char GroundLabeler::hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const
 {
   constexpr float kNear = 0.35F;  // [m] a person's link
   constexpr int kRows = 2, kColumns = 4;
-  if (!hasDirection(p)) return ignored_;
-  if (found_ground_ && surface_.heightOf(p.x, p.y, p.z) < static_cast<float>(config_.ground_height_m)) return ground_;
-  std::uint32_t label = structure_;
-  float least = kNear * kNear;
+  if (!hasDirection(p)) return kIgnored;
+  if (found_ground_ && surface_.heightOf(p.x, p.y, p.z) < static_cast<float>(config_.ground_height_m)) return kGround;
   const int rows = static_cast<int>(cloud.height), columns = static_cast<int>(cloud.width);
   const int row = static_cast<int>(pixel) / columns, column = static_cast<int>(pixel) % columns;
   const int reach = std::min(kColumns, (columns - 1) / 2);
-  for (int r = std::max(0, row - kRows); r <= std::min(rows - 1, row + kRows); ++r)
+  const int first = std::max(0, row - kRows), last = std::min(rows - 1, row + kRows);
+  const bool wraps = column < reach || column + reach >= columns;
+  // most have nothing but structure around them: one look at bytes that lie side by side
+  bool may_be_object = wraps;
+  for (int r = first; r <= last && !may_be_object; ++r)
+    may_be_object = std::memchr(&shown_[static_cast<std::size_t>(r * columns + column - reach)], kObject,
+                                static_cast<std::size_t>(2 * reach + 1)) != nullptr;
+  if (!may_be_object) return kStructure;
+  unsigned char nearest = kStructure;
+  float least = kNear * kNear;
+  for (int r = first; r <= last; ++r)
     for (int c = column - reach; c <= column + reach; ++c)
     {
-      const LabelledPoint& q = cloud.points[static_cast<std::size_t>(r * columns + (c + columns) % columns)];
-      if (q.label != structure_ && q.label != object_) continue;
+      const auto at = static_cast<std::size_t>(r * columns + (c + columns) % columns);
+      if (shown_[at] < kStructure) continue;
+      const LabelledPoint& q = cloud.points[at];
       const float dx = q.x - p.x, dy = q.y - p.y, dz = q.z - p.z, squared = dx * dx + dy * dy + dz * dz;
-      if (squared < least) least = squared, label = q.label;
+      if (squared < least) least = squared, nearest = shown_[at];
     }
-  return label;
+  return nearest;
 }
 }  // namespace lidar_panoptic_clustering

@@ -67,7 +67,7 @@ std::uint32_t sectorOf(float x, float y)
 }  // namespace
 
 GroundSurface::GroundSurface()
-    : lowest_(kCells), ground_(kCells), distance_(kCells), rise_(kCells), unseen_(kCells), expected_(kSectors)
+    : lowest_(kCells), ground_(kCells), distance_(kCells), unseen_(kCells), expected_(kSectors), lines_(kCells)
 {
 }
 
@@ -144,7 +144,8 @@ bool GroundSurface::findPlane(const LabelledCloud& cloud)
     votePlane();
     for (const float gate : kGates) on_plane = fitPlane(gate);
   }
-  if (on_plane >= std::max(kFewest, near_.size() / 10)) return true;
+  const bool is_below = plane_.offset < 0.0F;  // the sensor; above it is the ground of one that stands on its head
+  if (is_below && on_plane >= std::max(kFewest, near_.size() / 10)) return true;
   plane_ = {0.0F, 0.0F, bottom};
   return false;
 }
@@ -301,26 +302,22 @@ void GroundSurface::flatten()
 float GroundSurface::heightOf(float x, float y, float z) const
 {
   const float range = std::sqrt(x * x + y * y);
-  std::uint32_t inner = sectorOf(x, y) * kBins + kGrid.find(range);
-  inner -= range < distance_[inner] ? 1 : 0;
-  return plane_.heightOf(x, y, z) - ground_[inner] - rise_[inner] * (range - distance_[inner]);
+  return plane_.heightOf(x, y, z) - groundAt(sectorOf(x, y) * kBins + kGrid.find(range), range);
 }
 
-/// On the line between the grounds of two cells; beyond the last one as there.
 void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns)
 {
   for (std::uint32_t cell = 0; cell < kCells; ++cell)
-    rise_[cell] =
-        (cell + 1) % kBins == 0 ? 0.0F : (ground_[cell + 1] - ground_[cell]) / (distance_[cell + 1] - distance_[cell]);
+  {
+    const bool is_last = (cell + 1) % kBins == 0;
+    lines_[cell] = {distance_[cell], ground_[cell],
+                    is_last ? 0.0F : (ground_[cell + 1] - ground_[cell]) / (distance_[cell + 1] - distance_[cell])};
+  }
   for (std::size_t i = 0; i < cloud.points.size(); ++i)
   {
     if (cell_of_[i] == kNoCell) continue;
     const LabelledPoint& p = cloud.points[i];
-    const float range = returns[i].range;
-    std::uint32_t inner = cell_of_[i];
-    inner -= range < distance_[inner] ? 1 : 0;  // never in a sector's first cell, whose ground is at 0 m
-    const float ground = ground_[inner] + rise_[inner] * (range - distance_[inner]);
-    returns[i].height = plane_.heightOf(p.x, p.y, p.z) - ground;
+    returns[i].height = plane_.heightOf(p.x, p.y, p.z) - groundAt(cell_of_[i], returns[i].range);
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -67,14 +67,14 @@ void ScanComponents::find(const LabelledCloud& cloud, const std::vector<Grounded
 }
 
 /// Runs of neighbours along a line are one from the start; each pair of runs, one below the other, is tried until it
-/// hangs together. `part_of_` holds a run's first pixel until gatherParts().
+/// hangs together. `part_of_` holds a pixel's run until gatherParts().
 void ScanComponents::link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
                           const Distances& distances, bool full_turn)
 {
   const std::uint32_t columns = cloud.width;
   const float squared_step = distances.step * distances.step, squared_link = distances.link * distances.link;
-  sets_.reset(returns.size());
-  part_of_.assign(returns.size(), kNone);
+  sets_.reset(0);
+  part_of_.resize(returns.size());
   pixels_.clear();
   loose_.clear();
   row_before_.assign(columns, kNone);
@@ -86,12 +86,20 @@ void ScanComponents::link(const LabelledCloud& cloud, const std::vector<Grounded
     std::uint32_t first = kNone, last = kNone, run = kNone, run_above = kNone, loose_above = kNone;
     for (std::uint32_t pixel = begin; pixel < begin + columns; ++pixel)
     {
-      if (!(returns[pixel].height >= distances.above)) continue;  // false for no return
+      if (!(returns[pixel].height >= distances.above))  // no return too
+      {
+        part_of_[pixel] = kNone;
+        continue;
+      }
       pixels_.push_back(pixel);
       if (first == kNone) first = pixel;
       const Tie beside = last == kNone || pixel - last > kColumnReach ? Tie::kNone : tie(pixel, last);
-      if (beside == Tie::kLoose) loose_.push_back({pixel, last});
-      if (beside != Tie::kTight) run = pixel, run_above = loose_above = kNone;
+      if (beside != Tie::kTight)
+      {
+        const std::uint32_t next = sets_.add();
+        if (beside == Tie::kLoose) loose_.push_back({next, run});
+        run = next, run_above = loose_above = kNone;
+      }
       last = pixel;
       part_of_[pixel] = run;
 
@@ -108,29 +116,27 @@ void ScanComponents::link(const LabelledCloud& cloud, const std::vector<Grounded
       else if (above == Tie::kLoose && over_run != loose_above)
       {
         loose_above = over_run;
-        loose_.push_back({pixel, over});
+        loose_.push_back({run, over_run});
       }
     }
     if (!full_turn || first == last || first + columns - last > kColumnReach) continue;
     const Tie around = tie(first, last);
-    if (around == Tie::kTight) sets_.unite(first, run);
-    if (around == Tie::kLoose) loose_.push_back({first, last});
+    if (around == Tie::kTight) sets_.unite(part_of_[first], run);
+    if (around == Tie::kLoose) loose_.push_back({part_of_[first], run});
   }
 }
 
 /// Numbers the parts and measures their size.
 void ScanComponents::gatherParts(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
-  parts_.clear();
+  sets_.flatten(part_of_run_);
+  std::uint32_t part_count = 0;
+  for (std::uint32_t run = 0; run < part_of_run_.size(); ++run)  // a set stands by its first run
+    part_of_run_[run] = part_of_run_[run] == run ? part_count++ : part_of_run_[part_of_run_[run]];
+  parts_.assign(part_count, {});
   for (const std::uint32_t pixel : pixels_)
   {
-    const std::uint32_t root = sets_.find(part_of_[pixel]);
-    if (root == pixel)  // the smallest member: the part's first
-    {
-      part_of_[pixel] = static_cast<std::uint32_t>(parts_.size());
-      parts_.emplace_back();
-    }
-    part_of_[pixel] = part_of_[root];
+    part_of_[pixel] = part_of_run_[part_of_[pixel]];
     ScanComponent& c = parts_[part_of_[pixel]];
     ++c.point_count;
     c.bottom = std::min(c.bottom, returns[pixel].height), c.top = std::max(c.top, returns[pixel].height);
@@ -142,7 +148,7 @@ void ScanComponents::gatherParts(const LabelledCloud& cloud, const std::vector<G
 void ScanComponents::joinParts()
 {
   sets_.reset(parts_.size());
-  for (const Pair& pair : loose_) sets_.unite(part_of_[pair.a], part_of_[pair.b]);
+  for (const Pair& pair : loose_) sets_.unite(part_of_run_[pair.a], part_of_run_[pair.b]);
   component_count_ = 0;
   component_of_part_.resize(parts_.size());
   for (std::uint32_t part = 0; part < parts_.size(); ++part)

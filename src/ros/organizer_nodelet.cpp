@@ -13,6 +13,9 @@ namespace lidar_panoptic_clustering
 namespace
 {
 constexpr std::uint32_t kQueue = 2;
+constexpr const char* kNoGround =
+    "no ground in the last scan: what it shows is judged without, and nothing is ground; "
+    "is z up, and the ground within 20 m?";
 }  // namespace
 
 OrganizerNodelet::~OrganizerNodelet()
@@ -235,7 +238,7 @@ double OrganizerNodelet::label(const sensor_msgs::PointCloud2& message, const La
   {
     const double milliseconds = organizer_->label(message, labels, all_points, frame);
     warn("labels", organizer_->doubt());
-    tellHeight();
+    tellGround();
     return milliseconds;
   }
   catch (const std::invalid_argument& error)
@@ -264,13 +267,26 @@ void OrganizerNodelet::tellLayout()
   warn("layout", found.doubt);
 }
 
-void OrganizerNodelet::tellHeight()
+void OrganizerNodelet::tellGround()
 {
-  const auto height = organizer_->sensorHeight();
-  if (!height) return;
-  const std::string text = fixedText(*height, 2) + " m over the ground";
-  diagnostics_.setText("sensor", text);
-  if (!std::exchange(told_height_, true)) NODELET_INFO("sensor found %s", text.c_str());
+  const auto ground = organizer_->ground();
+  if (!ground) return;
+  if (!ground->found)
+  {
+    diagnostics_.setFigure("scans without ground", ++without_ground_);
+    diagnostics_.setWarning("ground", kNoGround);
+    if (!std::exchange(told_no_ground_, true)) NODELET_WARN("%s", kNoGround);
+    return;
+  }
+  diagnostics_.setWarning("ground", "");
+  const std::string height = fixedText(ground->sensor_height_m, 2) + " m over the ground";
+  diagnostics_.setText("sensor", height);
+  const SlopedPlane& plane = ground->plane;
+  diagnostics_.setText("ground", "z = " + fixedText(double{plane.slope_x}, 4) + " x + " +
+                                     fixedText(double{plane.slope_y}, 4) + " y + " +
+                                     fixedText(double{plane.offset}, 3) + " m, sloped by " +
+                                     fixedText(ground->slope_deg, 1) + " degrees");
+  if (!std::exchange(told_height_, true)) NODELET_INFO("sensor found %s", height.c_str());
 }
 
 void OrganizerNodelet::warn(const char* subject, const std::string& doubt)

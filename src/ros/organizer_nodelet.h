@@ -85,8 +85,8 @@ private:
 
   /// What clouds are taken for: once in the log and from then on in the diagnostics, again when it changes.
   void tellLayout();
-  /// Likewise, of each scan.
-  void tellHeight();
+  /// The ground of each scan in the diagnostics; the sensor's height over it once in the log, and that there is none.
+  void tellGround();
   /// Of what is doubtful about `subject`: once in the log, and in the diagnostics for as long as it holds.
   void warn(const char* subject, const std::string& doubt);
   void refuse(const std::string& error);
@@ -102,7 +102,8 @@ private:
   std::optional<LabelMatcher::Pair> latched_pair_;  ///< the latched cloud and its labels
   std::uint64_t without_scan_ = 0;
   std::uint32_t told_layout_ = 0;  ///< FoundLayout::change
-  bool told_height_ = false;
+  bool told_height_ = false, told_no_ground_ = false;
+  std::uint64_t without_ground_ = 0;
   std::map<std::string, std::string> doubts_;  ///< by subject
   StreamDiagnostics diagnostics_;
 

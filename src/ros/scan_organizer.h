@@ -59,8 +59,12 @@ public:
   /// Whether labels come on a topic of their own.
   bool isSeparate() const { return config_.labeller.separate(); }
   const Organizer& organizer() const { return organizer_; }
-  /// See ScanLabeller::sensorHeight().
-  std::optional<float> sensorHeight() const { return labeller_.sensorHeight(); }
+  /// Of the scan labelled last, where labels come from the geometry; else nothing.
+  std::optional<GroundReport> ground() const
+  {
+    if (config_.labeller.labels != "none") return std::nullopt;
+    return labeller_.ground();
+  }
   /// What is doubtful about the labels, see ScanLabeller::doubt().
   const std::string& doubt() const { return labeller_.doubt(); }
 

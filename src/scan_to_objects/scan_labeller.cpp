@@ -23,10 +23,13 @@ ScanLabeller::ScanLabeller(const ScanLabellerConfig& config)
     : label_table_(std::make_shared<const ClassTable>(ClassTable::load(labelTableName(config)))),
       numbering_(label_table_, {!config.label_table.empty(), config.max_unknown_labels, config.check_label_shapes}),
       no_class_(ignoredId(*label_table_)),
+      height_as_intensity_(config.height_as_intensity),
       ground_(config.ground)
 {
   const std::string target = config.class_table.empty() ? labelTableName(config) : config.class_table;
   class_table_ = std::make_shared<const ClassTable>(ClassTable::load(target));
+  if (config.height_as_intensity && config.labels != "none")
+    throw std::invalid_argument("height_as_intensity: expected labels to be 'none', found '" + config.labels + "'");
   if (target == labelTableName(config)) return;
   mapping_.emplace(*label_table_, *class_table_);
   if (config.labels == "none") requireObjects();
@@ -78,7 +81,14 @@ void ScanLabeller::takeGeometry(OrganizedScan& scan, bool all)
     ground_.label(scan.image.cloud);
     if (all) ground_.labelPoints(scan, scan.labels);
   }
+  if (height_as_intensity_) writeHeights(scan.image.cloud);
   mapIds(scan);
+}
+
+void ScanLabeller::writeHeights(LabelledCloud& cloud) const
+{
+  for (LabelledPoint& point : cloud.points)
+    if (hasDirection({point.x, point.y, point.z, 0.0F})) point.intensity = ground_.heightOf(point.x, point.y, point.z);
 }
 
 /// Labels of a .label file lose their instances, and what is no return can be no thing.

@@ -55,8 +55,10 @@ Options describeOptions()
                         "taken with one");
   options.add_options()("shard", textValue("I/N")->default_value("1/1"), "every N-th scan, beginning with the I-th");
   options.add_options()("report", textValue("FILE.json"), "write all figures and what is needed to merge them");
-  options.add_options()("plot", textValue("DIR"),
-                        "write charts (by Python's matplotlib), and a figure of each sequence's worst scan");
+  options.add_options()(
+      "plot", textValue("DIR"),
+      "write charts (by Python's matplotlib), and a figure of each sequence's worst scan; with --labels none figures of "
+      "the ten worst scans, truth beside result, with the objects that were lost or merged marked");
   options.add_options()("labels", textValue("none", "classes"),
                         "classes, or none: objects by geometry alone, against the true objects of all classes");
   options.add_options()("keep-rings", numberValue(1), "with --labels none: every N-th ring, a sensor of fewer beams");
@@ -152,7 +154,7 @@ void drawWorstScans(const BenchmarkSettings& settings, const BenchmarkRun& run,
 /// Exit status.
 int runWithoutLabels(const Given& given)
 {
-  for (const char* option : {"semantics", "survey", "switches", "report", "plot", "merge", "keep-going"})
+  for (const char* option : {"semantics", "survey", "switches", "report", "merge", "keep-going"})
     if (isGiven(given, option))
       throw std::invalid_argument("--labels none and --" + std::string(option) + " exclude each other");
   BenchmarkSettings settings = readSettings(given);
@@ -162,6 +164,7 @@ int runWithoutLabels(const Given& given)
   without.keep_rings = numberOf(given, "keep-rings", 1, 64);
   without.shuffle = isGiven(given, "shuffle");
   without.structure = textOf(given, "structure");
+  without.plot = textOf(given, "plot");
   noteInterrupts();
   RunWithoutLabels benchmark(settings, without,
                              std::make_shared<const ClassTable>(ClassTable::load(settings.class_table)));

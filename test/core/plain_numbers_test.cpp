@@ -7,6 +7,7 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/evaluation/benchmark_report.h"
+#include "lidar_panoptic_clustering/evaluation/object_recall.h"
 #include "lidar_panoptic_clustering/projection/sensor_model.h"
 
 #include <gtest/gtest.h>
@@ -100,6 +101,11 @@ TEST_F(InALocaleWithCommas, ReportsAreTheSame)
   EXPECT_NE(text.find("1.25"), std::string::npos) << text;
   EXPECT_EQ(text.find("1,25"), std::string::npos) << text;
   EXPECT_NE(formatReport(report.rows[0].evaluation).find("100.0"), std::string::npos);
+  const std::string recall = formatObjectRecall(ObjectRecall(table));
+  EXPECT_NE(recall.find("Ground: precision 0.0, recall 0.0"), std::string::npos) << recall;
+  std::string line = "a ";
+  appendText(line, "%.1f", 1234.5);
+  EXPECT_EQ(line, "a 1234.5");
 }
 
 TEST(Printable, ControlCharactersAreShown)

@@ -188,6 +188,35 @@ struct BruteForce
   }
 };
 
+TEST(ObjectRecall, FlipsAreObjectsFoundInOneOfTwoScansInARow)
+{
+  ObjectRecallConfig config;
+  config.min_points = 5;
+  ObjectRecall recall(kitti(), config);
+  const auto add = [&recall](bool first_is_found, bool follows, std::uint32_t third_points)
+  {
+    const Scan scan({{10, kCar, 1, kObject, first_is_found ? 1U : 0U},
+                     {10, kCar, 2, kObject, 2},
+                     {third_points, kPerson, 1, kObject, 0}});
+    RecallScan view = scan.view();
+    view.follows = follows;
+    recall.addScan(view);
+  };
+  add(true, false, 4);
+  EXPECT_EQ(recall.shownTwice(), 0U);
+  add(false, true, 9);  // the first car flips; the person was too small before
+  EXPECT_EQ(recall.shownTwice(), 2U);
+  EXPECT_EQ(recall.flips(), 1U);
+  add(true, false, 9);  // another sequence
+  EXPECT_EQ(recall.shownTwice(), 2U);
+  add(true, true, 9);
+  EXPECT_EQ(recall.shownTwice(), 5U);
+  EXPECT_EQ(recall.flips(), 1U);
+  EXPECT_NE(formatObjectRecall(recall).find("Flips: 1 of 5 objects"), std::string::npos);
+  recall += recall;
+  EXPECT_EQ(recall.flips(), 2U);
+}
+
 TEST(ObjectRecall, EqualsBruteForceOnRandomScansAndAddsUp)
 {
   std::mt19937 random(3);

@@ -289,6 +289,32 @@ TEST_F(NoLabels, ObjectsComeFromTheGeometry)
   EXPECT_GT(cars_as_objects, cars * 7 / 10);
 }
 
+TEST_F(NoLabels, TheGroundIsReportedAndThatThereIsNone)
+{
+  ros::param::set(name_ + "/height_as_intensity", true);
+  start("none");
+  const LabelledCloud truth = simulatedScan("hdl64e");
+  input_.publish(toRosMessage(withoutLabels(truth)));
+  const auto out = output_->next();
+  ASSERT_TRUE(out);
+  std::size_t road = 0, low = 0;
+  for (std::size_t i = 0; i < truth.size(); ++i)
+    if (hasReturn(truth.points[i]) && truth.points[i].label == kRoad)
+      ++road, low += std::abs(out->points[i].intensity) < 0.15F ? 1U : 0U;
+  EXPECT_GT(low, road * 9 / 10);
+  auto report = diagnostics_->waitFor("scans processed", "1");
+  EXPECT_EQ(report["sensor"].substr(0, 3), "1.7") << report["sensor"];
+  EXPECT_NE(report["ground"].find(" y + -1.7"), std::string::npos) << report["ground"];
+  EXPECT_NE(report["ground"].find("sloped by 0."), std::string::npos) << report["ground"];
+
+  LabelledCloud head_down = truth;
+  for (LabelledPoint& point : head_down.points) point.y = -point.y, point.z = -point.z;
+  input_.publish(toRosMessage(withoutLabels(head_down)));
+  ASSERT_TRUE(output_->next());
+  report = diagnostics_->waitFor("scans without ground", "1");
+  EXPECT_NE(report["message"].find("no ground in the last scan"), std::string::npos) << report["message"];
+}
+
 class WrongParameters : public OrganizerGraph
 {
 };

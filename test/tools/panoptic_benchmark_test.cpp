@@ -240,6 +240,18 @@ TEST_F(PanopticBenchmark, WithoutMatplotlibItSaysWhatToInstallAndTheReportIsTher
   EXPECT_EQ(std::distance(fs::directory_iterator(folder_ / "charts"), fs::directory_iterator{}), 0);
 }
 
+TEST_F(PanopticBenchmark, WithoutLabelsItPrintsAndDrawsWhatWasFound)
+{
+  ASSERT_EQ(benchmark("--labels none --structure strict --plot worst"), 0) << err();
+  for (const char* part : {"structure strict", "lost  merged", "False segments", "Ground: precision", "CPU a scan"})
+    EXPECT_NE(out().find(part), std::string::npos) << part << "\n" << out();
+  std::size_t figures = 0;
+  for (const auto& file : std::filesystem::directory_iterator(folder_ / "worst"))
+    figures += read(file.path()).size() > 1000U ? 1U : 0U;
+  EXPECT_GT(figures, 0U);
+  EXPECT_LE(figures, 10U);
+}
+
 /// Clusters of the recorded scans, written and evaluated again by the other program.
 TEST_F(PanopticBenchmark, RecordedScansAgreeWithPanopticEvaluate)
 {

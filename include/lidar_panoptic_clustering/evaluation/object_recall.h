@@ -9,6 +9,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <utility>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -73,6 +74,7 @@ struct RecallScan
   ScanLabels truth;                               ///< of the data set
   const float* range_m = nullptr;                 ///< horizontal
   std::size_t size = 0;                           ///< points, the length of each array
+  bool follows = false;                           ///< the scan added before is the one before in time, too
 };
 
 /// What counts as an object, and in which bins of range recall is given.
@@ -94,6 +96,8 @@ struct ObjectRecallConfig
 ///   true objects, -sum p log p of the shares p of its points in each segment (those in none are one more);
 ///   under-segmentation over segments of at least `min_points` points, of the shares of each true object in it (all
 ///   else is one more).
+/// - A flip is a true object that two scans in a row show with `min_points` points, and that was found in one of them
+///   alone.
 /// - Ground is what the table "object" maps the truth's class to.
 ///
 /// Sums alone are kept: parts of a data set can be added. Buffers are kept between scans; not shared between threads.
@@ -117,6 +121,9 @@ public:
   const GroundCounts& ground() const { return ground_; }           ///< points of ground
   std::uint64_t scanCount() const { return scan_count_; }          ///< scans added
   std::uint64_t falseSegments() const { return false_segments_; }  ///< over all scans
+  /// Pairs of scans in a row that show the same object, and those among them that found it in one scan alone.
+  std::uint64_t shownTwice() const { return shown_twice_; }
+  std::uint64_t flips() const { return flips_; }  ///< see shownTwice()
   /// In false segments.
   std::uint64_t falsePoints() const { return false_points_; }
   /// Sums over all scans.
@@ -144,6 +151,7 @@ private:
   void countGround(const RecallScan& scan);
   void judgeObjects();
   void judgeSegments();
+  void countFlips(bool follows);
 
   ObjectRecallConfig config_;
   std::shared_ptr<const ClassTable> table_;
@@ -155,6 +163,7 @@ private:
   std::vector<RecallCounts> by_range_;
   GroundCounts ground_;
   std::uint64_t scan_count_ = 0, false_segments_ = 0, false_points_ = 0;
+  std::uint64_t shown_twice_ = 0, flips_ = 0;
   double over_ = 0.0, under_ = 0.0;
 
   // of the last scan; segment 0 stands for points in none, object 0 for all that is no true thing with an instance
@@ -164,6 +173,7 @@ private:
   std::vector<RecalledObject> all_objects_, objects_;
   std::vector<double> range_sum_;
   std::vector<FalseSegment> last_false_;
+  std::map<std::pair<std::uint32_t, std::uint32_t>, bool> was_found_;  ///< by class and instance
 };
 
 /// The tables a person reads.

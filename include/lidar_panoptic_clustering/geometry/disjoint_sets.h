@@ -19,6 +19,13 @@ public:
     std::iota(parent_.begin(), parent_.end(), 0U);
   }
 
+  /// Makes one more set of one element, and returns that.
+  std::uint32_t add()
+  {
+    parent_.push_back(static_cast<std::uint32_t>(parent_.size()));
+    return parent_.back();
+  }
+
   /// The element that stands for the set of i < n.
   std::uint32_t find(std::uint32_t i)
   {

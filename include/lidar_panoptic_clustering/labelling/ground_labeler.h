@@ -8,6 +8,7 @@
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 #include "lidar_panoptic_clustering/projection/organized_scan.h"
 
+#include <array>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -82,6 +83,9 @@ public:
   /// Labels points without scan lines, in any order, by a view of them (see PolarView). Linear.
   void labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels);
 
+  /// Of a place [m], sensor frame, above the ground of the last scan; NaN where that shows none.
+  float heightOf(float x, float y, float z) const;
+
   /// Of the last scan.
   GroundReport ground() const;
   /// Whether the last scan shows ground under the sensor.
@@ -91,16 +95,16 @@ public:
 
 private:
   void judge();
-  std::uint32_t hiddenLabel(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
+  unsigned char hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
 
   GroundLabelerConfig config_;
-  std::uint32_t ignored_, ground_, structure_, object_;  ///< raw ids
+  std::array<std::uint32_t, 4> ids_{};  ///< raw: ignored, ground, structure, object
   GroundSurface surface_;
   ScanComponents components_;
   ComponentJudge judge_;
   PolarView view_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
-  std::vector<std::uint32_t> label_of_component_, label_of_part_;
+  std::vector<unsigned char> shown_of_component_, shown_of_part_, shown_;  ///< places in ids_; the last by pixel
 };
 }  // namespace lidar_panoptic_clustering

@@ -65,6 +65,12 @@ private:
     std::uint32_t point;
     float top;
   };
+  /// The ground from a cell's to the next one's out.
+  struct Line
+  {
+    float distance, ground;  ///< where it begins: horizontal [m]; above the plane [m]
+    float rise;              ///< over run
+  };
 
   void sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns);
   bool findPlane(const LabelledCloud& cloud);
@@ -75,6 +81,12 @@ private:
   void refuseIslands(std::uint32_t bin);
   void bridge();
   void flatten();
+  /// On the line between the grounds of two cells; beyond the last one as there.
+  float groundAt(std::uint32_t cell, float range) const
+  {
+    const Line& line = lines_[cell - (range < lines_[cell].distance ? 1 : 0)];  // a sector's first has its at 0 m
+    return line.ground + line.rise * (range - line.distance);
+  }
   void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns);
 
   SlopedPlane plane_;
@@ -83,8 +95,8 @@ private:
   std::vector<Low> near_;               ///< the lowest of the cells around the sensor
   std::vector<float> ground_;           ///< by cell: above the plane [m]
   std::vector<float> distance_;         ///< by cell: horizontal, where its ground was seen [m]
-  std::vector<float> rise_;             ///< by cell: of the ground from here to the next one out, rise over run
   std::vector<float> unseen_;           ///< by cell: how far back the ground was seen last [m]; 0: here
   std::vector<float> expected_;         ///< by sector: what the cells inside let expect of the bin in hand
+  std::vector<Line> lines_;             ///< by cell
 };
 }  // namespace lidar_panoptic_clustering

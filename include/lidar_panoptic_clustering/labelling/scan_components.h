@@ -99,7 +99,8 @@ private:
   std::vector<std::uint32_t> part_of_;
   std::vector<std::uint32_t> pixels_;      ///< of the returns above the ground, in row-major order
   std::vector<std::uint32_t> row_before_;  ///< by column: the last row of a return above the ground
-  std::vector<Pair> loose_;                ///< pixels closer than the link, not the step
+  std::vector<Pair> loose_;                ///< runs closer than the link, not the step
+  std::vector<std::uint32_t> part_of_run_;
   std::vector<ScanComponent> parts_, components_;
   std::vector<std::uint32_t> component_of_part_;
   std::uint32_t component_count_ = 0;

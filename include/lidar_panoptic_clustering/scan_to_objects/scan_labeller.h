@@ -22,7 +22,10 @@ struct ScanLabellerConfig
   std::string class_table;          ///< of the labels that go out; empty: the same
   double max_unknown_labels = 0.0;  ///< share of a scan's labelled returns whose ids the table may lack
   bool check_label_shapes = true;   ///< refuse ids that look like another class's, see LabelNumbering
-  GroundLabelerConfig ground;       ///< where labels is "none"
+  /// Where labels is "none": the image's points carry their height over the ground [m] in the place of the intensity;
+  /// NaN in scans without ground.
+  bool height_as_intensity = false;
+  GroundLabelerConfig ground;  ///< where labels is "none"
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -32,6 +35,7 @@ struct ScanLabellerConfig
     visitor("class_table", self.class_table, std::vector<std::string>{});
     visitor("max_unknown_labels", self.max_unknown_labels, 0.0, 1.0);
     visitor("check_label_shapes", self.check_label_shapes);
+    visitor("height_as_intensity", self.height_as_intensity);
     GroundLabelerConfig::visit(self.ground, visitor);
   }
 
@@ -64,13 +68,6 @@ public:
   /// What the last geometry tells of the ground.
   GroundReport ground() const { return ground_.ground(); }
 
-  /// Of the last scan labelled by geometry [m]; nothing where no ground was found, and with labels from elsewhere.
-  std::optional<float> sensorHeight() const
-  {
-    if (!ground_.foundGround()) return std::nullopt;
-    return ground_.groundPlane().heightOf(0.0F, 0.0F, 0.0F);
-  }
-
   /// Of the labels that go out.
   const std::shared_ptr<const ClassTable>& classTable() const { return class_table_; }
   /// Which other tables the labels so far may be of, see LabelNumbering::doubt().
@@ -82,12 +79,14 @@ private:
   void findHiddenLabels(const OrganizedScan& scan);
   std::uint32_t classIn(std::uint32_t label) const;
   void mapIds(OrganizedScan& scan) const;
+  void writeHeights(LabelledCloud& cloud) const;
 
   std::shared_ptr<const ClassTable> label_table_;
   std::shared_ptr<const ClassTable> class_table_;
   std::optional<ClassMapping> mapping_;  ///< where the tables differ
   LabelNumbering numbering_;
   std::uint32_t no_class_;  ///< of the labels that come
+  bool height_as_intensity_;
   GroundLabeler ground_;
   std::vector<std::uint32_t> separate_;       ///< by pixel or point
   std::vector<std::uint32_t> hidden_labels_;  ///< of returns that no pixel shows

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "core/plain_numbers.h"
 #include "lidar_panoptic_clustering/evaluation/object_recall.h"
 #include "lidar_panoptic_clustering/scan_to_objects/scan_to_objects.h"
 #include "tools/support/benchmark_scans.h"
 #include "tools/support/benchmark_settings.h"
 #include "tools/support/interrupt.h"
 #include "tools/support/progress.h"
+#include "tools/support/recall_figure.h"
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +28,7 @@ struct WithoutLabels
   int keep_rings = 1;                  ///< every N-th, from the highest: a sensor of fewer beams
   bool shuffle = false;                ///< points in an order that means nothing, as of a lidar without scan lines
   std::string structure = "balanced";  ///< see GroundLabelerConfig
+  std::string plot;                    ///< folder for figures of the worst scans of the first row; none when empty
 };
 
 /// Runs the whole chain, from points without classes to objects, and compares with the true objects whatever their
@@ -35,7 +38,7 @@ class RunWithoutLabels
 public:
   RunWithoutLabels(const BenchmarkSettings& settings, const WithoutLabels& without,
                    const std::shared_ptr<const ClassTable>& table)
-      : settings_(settings), without_(without), scans_(settings, table)
+      : settings_(settings), without_(without), table_(table), scans_(settings, table)
   {
     ObjectRecallConfig rules;
     rules.min_points = without.keep_rings > 1 ? 30 : 50;
@@ -59,14 +62,15 @@ public:
       Progress progress("benchmark", scans_.size());
       for (std::size_t i = 0; i < scans_.size() && interrupted() == 0; ++i, progress.step()) process(i);
     }
+    if (!without_.plot.empty() && interrupted() == 0) drawWorst();
     std::string text;
     for (Row& row : rows_)
     {
       std::sort(row.cpu_ms.begin(), row.cpu_ms.end());
-      char line[96] = "";
+      std::string line;
       if (!row.cpu_ms.empty())
-        std::snprintf(line, sizeof line, "CPU a scan, points to objects: median %.1f ms, largest %.1f ms\n",
-                      row.cpu_ms[row.cpu_ms.size() / 2], row.cpu_ms.back());
+        appendText(line, "CPU a scan, points to objects: median %.1f ms, largest %.1f ms\n",
+                   row.cpu_ms[row.cpu_ms.size() / 2], row.cpu_ms.back());
       text += row.name + ", structure " + without_.structure + "\n\n" + formatObjectRecall(row.recall) + line + "\n";
     }
     return text;
@@ -79,6 +83,11 @@ private:
     std::unique_ptr<ScanToObjects> chain;
     ObjectRecall recall;
     std::vector<double> cpu_ms;  ///< but for the first scan's, which grows buffers
+  };
+  /// How many true objects of a scan were not found.
+  struct Misses
+  {
+    std::size_t count, scan;
   };
 
   /// Which points of the file go in, in what order.
@@ -93,7 +102,12 @@ private:
     if (without_.shuffle) std::shuffle(chosen_.begin(), chosen_.end(), same_each_time);
   }
 
-  void process(std::size_t i)
+  bool follows(std::size_t i) const
+  {
+    return i > 0 && scans_.sequence(i) == scans_.sequence(i - 1) && scans_.numberOf(i) == scans_.numberOf(i - 1) + 1;
+  }
+
+  void take(std::size_t i)
   {
     scans_.read(i, scan_);
     choose(scan_.points);
@@ -104,14 +118,54 @@ private:
       truth_.push_back(scan_.truth[k]);
       range_.push_back(std::hypot(scan_.points[k].x, scan_.points[k].y));
     }
+  }
+
+  RecallScan recallScan(const ScanToObjects& chain, bool follows) const
+  {
+    return {chain.labels().data(),
+            chain.instanceIds().data(),
+            ScanLabels::packed(truth_.data()),
+            range_.data(),
+            points_.size(),
+            follows};
+  }
+
+  void process(std::size_t i)
+  {
+    take(i);
     for (Row& row : rows_)
     {
       const double begin = cpuTime();
       row.chain->process(viewOf(points_));
       if (i > 0) row.cpu_ms.push_back(cpuTime() - begin);
-      row.recall.addScan({row.chain->labels().data(), row.chain->instanceIds().data(),
-                          ScanLabels::packed(truth_.data()), range_.data(), points_.size()});
+      row.recall.addScan(recallScan(*row.chain, follows(i)));
       if (!settings_.output.empty()) save(row, i);
+    }
+    const auto& objects = rows_[0].recall.objects();
+    misses_.push_back({static_cast<std::size_t>(std::count_if(objects.begin(), objects.end(),
+                                                              [](const RecalledObject& object)
+                                                              { return object.outcome != RecallOutcome::kFound; })),
+                       i});
+  }
+
+  /// The ten scans with the most true objects that were not found.
+  void drawWorst()
+  {
+    constexpr std::size_t kFigures = 10;
+    std::stable_sort(misses_.begin(), misses_.end(),
+                     [](const Misses& a, const Misses& b) { return a.count > b.count; });
+    std::filesystem::create_directories(without_.plot);
+    for (std::size_t k = 0; k < std::min(kFigures, misses_.size()); ++k)
+    {
+      const std::size_t i = misses_[k].scan;
+      take(i);
+      Row& row = rows_[0];
+      row.chain->process(viewOf(points_));
+      ObjectRecall recall(table_, row.recall.config());
+      recall.addScan(recallScan(*row.chain, false));
+      const auto file = "scan_" + scans_.sequence(i) + "_" + scans_.scanName(i) + ".png";
+      drawRecallFigure("Sequence " + scans_.sequence(i) + ", scan " + scans_.scanName(i), *row.chain, recall, truth_,
+                       *table_, (std::filesystem::path(without_.plot) / file).string());
     }
   }
 
@@ -136,6 +190,7 @@ private:
 
   BenchmarkSettings settings_;
   WithoutLabels without_;
+  std::shared_ptr<const ClassTable> table_;
   BenchmarkScans scans_;
   std::vector<Row> rows_;
   BenchmarkScan scan_;
@@ -144,5 +199,6 @@ private:
   std::vector<ScanPoint> points_;
   std::vector<std::uint32_t> truth_;
   std::vector<float> range_;
+  std::vector<Misses> misses_;  ///< of the first row, by scan
 };
 }  // namespace lidar_panoptic_clustering
