@@ -236,12 +236,13 @@ void Tracker::vote(std::uint32_t track, const Observation& observation)
   tracks_[track].prior_class = winner;
 }
 
-/// Whether a track's votes are clearly against the class that a scan gives it. Where they are even, either may be right,
-/// and to change the scan's own class would gain nothing.
+/// Whether a track's votes are clearly against the class that a scan gives it. Where they are few or about even, either
+/// may be right, and to change the scan's own class would gain nothing.
 bool Tracker::isOverruled(std::uint32_t track, ClassIndex seen) const
 {
-  constexpr float kClearly = 2.0F;  // two thirds of the votes
-  if (track == kNone) return false;
+  constexpr std::uint32_t kFewest = 5;  // scans that make a vote: half a second
+  constexpr float kClearly = 2.0F;      // two thirds of the votes
+  if (track == kNone || tracks_[track].object.scans < kFewest) return false;
   const float* votes = votes_.data() + track * table_->size();
   return votes[tracks_[track].object.class_index] >= kClearly * votes[seen];
 }
