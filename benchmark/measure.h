@@ -112,8 +112,7 @@ inline void pipeline(benchmark::State& state, const Scans& scans, const std::str
           {
             const LabelledCloud& scan = scans[i % scans.size()];
             if (fresh) out = std::make_unique<PanopticCloud>();
-            frames.segment(scan);
-            frames.paint(scan, *out);
+            frames.process(scan, *out);
             const StageTimes& times = frames.times();
             const double ms[4] = {times.select_ms, times.cluster_ms, times.refine_ms, times.paint_ms};
             for (int k = 0; k < 4; ++k) stage[k].push_back(ms[k]);

@@ -2,7 +2,6 @@
 //   recorded/, street/, street_128/: whole scans with their true classes
 //   ten_thousand/: clustering, recorded scans with exactly 10,000 things
 //   all_things/, street_all_things/, street_128_all_things/: every return a thing, on 64 and on 128 rings
-//   size/N, size_all_things/N: N rings x 16 N columns, for the cost against size
 #include "measure.h"
 
 #include <malloc.h>
@@ -49,12 +48,6 @@ void addAll()
           [name](benchmark::State& state, const Scans& scans) { cluster(state, scans, name); });
   for (const std::string scene_name : {"all_things", "street_128", "street_all_things", "street_128_all_things"})
     addAlgorithms(scene_name, fast);
-  for (const std::string kind : {"size/", "size_all_things/"})
-    for (const std::string rings : {"8", "16", "32", "64", "128", "256"})
-      for (const std::string& name : algorithmNames())
-        if (kind == "size/" || (name != "euclidean" && name != "supervoxel"))
-          addOn(kind + rings + "/pipeline/" + name, kind + rings,
-                [name](benchmark::State& state, const Scans& scans) { pipeline(state, scans, name); });
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -6,7 +6,8 @@ source "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 required_packages() {
   printf '%s\n' g++ cmake make pkg-config \
     libbenchmark-dev libboost-program-options-dev libcairo2-dev libeigen3-dev libgtest-dev libpcl-dev libyaml-cpp-dev \
-    nlohmann-json3-dev fonts-dejavu-core pybind11-dev python3-dev python3-mypy python3-numpy python3-pytest
+    nlohmann-json3-dev fonts-dejavu-core pybind11-dev python3-dev python3-distributed python3-matplotlib python3-mypy \
+    python3-numpy python3-pytest
   [ "${1:-}" != without_ros ] || return 0
   local name
   if [ ! -e "$ros_setup" ]; then

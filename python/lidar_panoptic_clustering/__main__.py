@@ -20,13 +20,13 @@ def _plot(arguments: List[str]) -> int:
 
 
 def _benchmark(arguments: List[str]) -> int:
-    from .cluster.benchmark import main
+    from ._benchmark_command import main
 
     return main(arguments)
 
 
 def _label(arguments: List[str]) -> int:
-    from .cluster.label import main
+    from ._label_command import main
 
     return main(arguments)
 

@@ -1,7 +1,7 @@
 """What all charts share: a page with title, subtitle, legend and one pair of axes, laid out by measured texts."""
 
 import os
-from typing import Any, Dict, List, Optional, Sequence, Tuple
+from typing import Any, List, Mapping, Optional, Sequence, Tuple
 
 INK, FAINT_INK, GRID = "#1f2933", "#5b6770", "#dde2e7"
 # Okabe and Ito's palette, which colour-blind readers can tell apart
@@ -66,7 +66,7 @@ class Page:
         self._categories: List[str] = []
         self._handles: Optional[List[Any]] = None
 
-    def bars(self, categories: Sequence[str], series: Dict[str, Sequence[float]], decimals: Optional[int]) -> None:
+    def bars(self, categories: Sequence[str], series: Mapping[str, Sequence[float]], decimals: Optional[int]) -> None:
         """Grouped bars, one a series in each category; with `decimals` each value is written at its bar."""
         width = 0.8 / max(1, len(series))
         for index, (name, values) in enumerate(series.items()):
@@ -78,7 +78,7 @@ class Page:
         self._name(categories)
 
     def spans(
-        self, categories: Sequence[str], series: Dict[str, Sequence[Tuple[float, float]]], ends: Tuple[str, str]
+        self, categories: Sequence[str], series: Mapping[str, Sequence[Tuple[float, float]]], ends: Tuple[str, str]
     ) -> None:
         """On a logarithmic axis, from a full mark at the lower to an open one at the upper value, both written."""
         from matplotlib.lines import Line2D
@@ -140,8 +140,8 @@ class Page:
         """Aside and renamed."""
         with self._style(STYLE):
             self._lay_out()
-            part = f"{path}.part"
-            metadata = {"Date": None} if kind == "svg" else {"Software": None}
+            part = f"{path}.{os.getpid()}.part"
+            metadata = {"Date": None} if kind == "svg" else None
             try:
                 self.figure.savefig(part, format=kind, dpi=DPI, metadata=metadata)
                 os.replace(part, path)

@@ -23,10 +23,7 @@ def main(arguments: List[str]) -> int:
     except ImportError as error:
         if (error.name or "").split(".")[0] != "matplotlib":
             raise
-        print(
-            f"plot: {error}: apt-get install python3-matplotlib, or pip install matplotlib; {given.report} is as it was",
-            file=sys.stderr,
-        )
+        print(f"plot: {error}: apt-get install python3-matplotlib, or pip install matplotlib", file=sys.stderr)
         return 1
     except (OSError, ValueError) as error:
         print(f"plot: {error}", file=sys.stderr)

@@ -1,7 +1,7 @@
 """Charts of a benchmark's report: ``python3 -m lidar_panoptic_clustering plot report.json``.
 
-The report is what ``--report`` of ``panoptic_benchmark`` and of ``python3 -m lidar_panoptic_clustering benchmark`` writes.
-Needs matplotlib (3.1 or newer), and nothing of the compiled part of this package.
+The report is what ``--report`` of panoptic_benchmark, and of the command ``benchmark`` of this package, writes.
+Needs matplotlib (run with 3.6), and nothing of the compiled part of this package.
 """
 
 import json

@@ -123,6 +123,17 @@ void drawScaleBar(Canvas& canvas, const BirdsEyeView& view, double scale)
               {13.0 * scale, {kWhite, 0.9}, TextAlign::kCentre});
 }
 
+void drawTrails(Canvas& canvas, const BirdsEyeView& view, const std::vector<Trail>& trails, double scale)
+{
+  for (const Trail& trail : trails)
+    for (std::size_t i = 1; i < trail.places.size(); ++i)
+    {
+      const Trail::Place &from = trail.places[i - 1], &to = trail.places[i];
+      const double alpha = static_cast<double>(i + 1) / static_cast<double>(trail.places.size());
+      canvas.line({view.toPixel(from.x, from.y), view.toPixel(to.x, to.y)}, {trail.rgb, alpha}, 3.0 * scale);
+    }
+}
+
 void drawBoxes(Canvas& canvas, const BirdsEyeView& view, const std::vector<NamedBox>& boxes, double scale)
 {
   for (const NamedBox& box : boxes)
@@ -190,6 +201,7 @@ void drawBirdsEyeView(Canvas& canvas, const BirdsEyeView& view, const ScanPanel&
   drawPoints(canvas, view, *panel.cloud, scale);
   drawRangeLabels(canvas, view, scale);
   drawSensor(canvas, view, scale);
+  drawTrails(canvas, view, panel.trails, scale);
   drawBoxes(canvas, view, panel.boxes, scale);
   drawScaleBar(canvas, view, scale);
   drawMarks(canvas, view, panel.marks, scale);

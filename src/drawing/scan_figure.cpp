@@ -1,7 +1,7 @@
 #include "lidar_panoptic_clustering/drawing/scan_figure.h"
 
-#include "drawing/round_numbers.h"
 #include "drawing/range_picture.h"
+#include "drawing/round_numbers.h"
 #include "drawing/scan_figure_layout.h"
 
 #include <algorithm>

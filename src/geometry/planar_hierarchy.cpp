@@ -1,8 +1,9 @@
 #include "lidar_panoptic_clustering/geometry/planar_hierarchy.h"
 
 #include <algorithm>
-#include <limits>
+#include <numeric>
 #include <stdexcept>
+#include <utility>
 
 namespace lidar_panoptic_clustering
 {
@@ -33,6 +34,23 @@ std::uint32_t alongCurve(std::uint32_t x, std::uint32_t y)
 {
   return kSpread[x] | kSpread[y] << 1U;
 }
+
+struct CurvePlace
+{
+  std::uint8_t x, y;
+};
+struct Curve
+{
+  CurvePlace of[64];
+};
+constexpr Curve makeCurve()
+{
+  Curve curve{};
+  for (std::uint8_t y = 0; y < 8; ++y)
+    for (std::uint8_t x = 0; x < 8; ++x) curve.of[kSpread[x] | kSpread[y] << 1U] = {x, y};
+  return curve;
+}
+constexpr Curve kCurve = makeCurve();  // the column and row of each place along it
 
 /// std::floor is a call to the C library on processors without SSE 4.1.
 std::int32_t floorToInt(float value)
@@ -68,6 +86,8 @@ void PlanarHierarchy::close()
   findNeighbours();
 }
 
+/// Lays the grid over the points and makes runs of those that lie in one cell one after the other, as neighbours on a
+/// scan line mostly do; sorts these.
 void PlanarHierarchy::sortIntoCells()
 {
   float min_x = added_[0].x, max_x = min_x, min_y = added_[0].y, max_y = min_y;
@@ -76,31 +96,42 @@ void PlanarHierarchy::sortIntoCells()
     min_x = std::min(min_x, p.x), max_x = std::max(max_x, p.x);
     min_y = std::min(min_y, p.y), max_y = std::max(max_y, p.y);
   }
-  origin_x_ = floorToInt(min_x * cells_per_m_), origin_y_ = floorToInt(min_y * cells_per_m_);
-  stride_ = (static_cast<std::uint64_t>(floorToInt(max_x * cells_per_m_) - origin_x_) >> 3U) + 2;
-  const std::uint64_t rows = (static_cast<std::uint64_t>(floorToInt(max_y * cells_per_m_) - origin_y_) >> 3U) + 1;
-  const auto keyOf = [this](const PlanarSample& p)
+  const std::int32_t origin_x = floorToInt(min_x * cells_per_m_), origin_y = floorToInt(min_y * cells_per_m_);
+  stride_ = (static_cast<std::uint64_t>(floorToInt(max_x * cells_per_m_) - origin_x) >> 3U) + 2;
+  const std::uint64_t rows = (static_cast<std::uint64_t>(floorToInt(max_y * cells_per_m_) - origin_y) >> 3U) + 1;
+
+  runs_.clear();
+  std::uint32_t last_x = 0, last_y = 0;
+  const auto count = static_cast<std::uint32_t>(added_.size());
+  for (std::uint32_t k = 0; k < count; ++k)
   {
-    const auto x = static_cast<std::uint32_t>(floorToInt(p.x * cells_per_m_) - origin_x_);
-    const auto y = static_cast<std::uint32_t>(floorToInt(p.y * cells_per_m_) - origin_y_);
-    return ((y >> 3U) * stride_ + (x >> 3U)) << 6U | alongCurve(x & 7U, y & 7U);
-  };
+    const auto x = static_cast<std::uint32_t>(floorToInt(added_[k].x * cells_per_m_) - origin_x);
+    const auto y = static_cast<std::uint32_t>(floorToInt(added_[k].y * cells_per_m_) - origin_y);
+    if (k > 0 && x == last_x && y == last_y) continue;
+    last_x = x, last_y = y;
+    runs_.push_back({((y >> 3U) * stride_ + (x >> 3U)) << 6U | alongCurve(x & 7U, y & 7U), k});
+  }
+  const auto run_count = static_cast<std::uint32_t>(runs_.size());
+  runs_.push_back({0, count});
+
   const int bits = widthOf(rows * stride_ - 1) + 6;
-  if (bits <= 32)
+  if (bits > 32)
   {
-    entries_.clear();
-    for (std::size_t k = 0; k < added_.size(); ++k) entries_.push_back(keyOf(added_[k]) << 32U | k);
-    if (entries_.size() <= kFew)
-      std::sort(entries_.begin(), entries_.end());
-    else
-      sortBySteps(bits);
-    for (const std::uint64_t entry : entries_) addPoint(entry >> 32U, static_cast<std::uint32_t>(entry));
+    order_.resize(run_count);
+    std::iota(order_.begin(), order_.end(), 0U);
+    std::sort(order_.begin(), order_.end(),
+              [this](std::uint32_t a, std::uint32_t b)
+              { return runs_[a].key != runs_[b].key ? runs_[a].key < runs_[b].key : a < b; });
+    for (const std::uint32_t run : order_) placeRun(run);
     return;
   }
-  std::vector<std::pair<std::uint64_t, std::uint32_t>> wide;
-  for (std::size_t k = 0; k < added_.size(); ++k) wide.emplace_back(keyOf(added_[k]), static_cast<std::uint32_t>(k));
-  std::sort(wide.begin(), wide.end());
-  for (const auto& [key, k] : wide) addPoint(key, k);
+  entries_.resize(run_count);
+  for (std::uint32_t run = 0; run < run_count; ++run) entries_[run] = runs_[run].key << 32U | run;
+  if (run_count <= kFew)
+    std::sort(entries_.begin(), entries_.end());
+  else
+    sortBySteps(bits);
+  for (const std::uint64_t entry : entries_) placeRun(static_cast<std::uint32_t>(entry));
 }
 
 /// Sorts entries_ by the `bits` from bit 32 on, a digit after the other; what is equal keeps its order.
@@ -121,9 +152,10 @@ void PlanarHierarchy::sortBySteps(int bits)
   }
 }
 
-/// The next point in order of keys.
-void PlanarHierarchy::addPoint(std::uint64_t key, std::uint32_t added)
+/// Takes over the points of the next run in order of keys.
+inline void PlanarHierarchy::placeRun(std::uint32_t run)
 {
+  const std::uint64_t key = runs_[run].key;
   if (placed_ == 0 || key != last_key_)
   {
     if (placed_ == 0 || key >> 6U != last_key_ >> 6U)
@@ -131,34 +163,28 @@ void PlanarHierarchy::addPoint(std::uint64_t key, std::uint32_t added)
       Tile& tile = tiles_.emplace_back();
       tile.place = key >> 6U;
       tile.first_cell = cells_.size();
+      tile_at_ = {static_cast<std::int32_t>(tile.place % stride_) * kSide,
+                  static_cast<std::int32_t>(tile.place / stride_) * kSide};
     }
     last_key_ = key;
     Tile& tile = tiles_.back();
     tile.occupied |= std::uint64_t{1} << (key & 63U);
-    std::int32_t x = 0, y = 0;
-    for (int bit = 0; bit < 3; ++bit)
-    {
-      x |= static_cast<std::int32_t>(key >> (2 * bit) & 1U) << bit;
-      y |= static_cast<std::int32_t>(key >> (2 * bit + 1) & 1U) << bit;
-    }
-    tile.rows[0][y] = static_cast<std::uint8_t>(tile.rows[0][y] | 1U << x);
-    cells_.addCell(placed_, {static_cast<std::int32_t>(tile.place % stride_) * kSide + x,
-                             static_cast<std::int32_t>(tile.place / stride_) * kSide + y});
+    const CurvePlace at = kCurve.of[key & 63U];
+    tile.rows[0][at.y] = static_cast<std::uint8_t>(tile.rows[0][at.y] | 1U << at.x);
+    cells_.addCell(placed_, {tile_at_.x + at.x, tile_at_.y + at.y});
   }
-  cells_.points()[placed_++] = added_[added];
-  cell_of_added_[added] = cells_.size() - 1;
+  const std::uint32_t begin = runs_[run].begin, end = runs_[run + 1].begin, cell = cells_.size() - 1;
+  PlanarSample* const points = cells_.points().data();
+  for (std::uint32_t k = begin; k < end; ++k)
+  {
+    points[placed_++] = added_[k];
+    cell_of_added_[k] = cell;
+  }
 }
 
 void PlanarHierarchy::closeTiles()
 {
   for (Tile& tile : tiles_)
-  {
-    std::uint8_t before = 0;
-    for (unsigned eighth = 0; eighth < kSide; ++eighth)
-    {
-      tile.rank[eighth] = before;
-      before = static_cast<std::uint8_t>(before + kBitCounts.of[tile.occupied >> (8 * eighth) & 255U]);
-    }
     for (int level = 1; level < kLevels; ++level)
       for (int y = 0; y < kSide >> level; ++y)
       {
@@ -167,7 +193,6 @@ void PlanarHierarchy::closeTiles()
           if ((both >> (2 * x) & 3U) != 0)
             tile.rows[level][y] = static_cast<std::uint8_t>(tile.rows[level][y] | 1U << x);
       }
-  }
 }
 
 /// One sweep over all rows with a finger in the row above.
@@ -185,22 +210,6 @@ void PlanarHierarchy::findNeighbours()
     for (std::size_t n = finger; n < tiles_.size() && tiles_[n].place <= first + 2; ++n)
       tile.beside[1 + tiles_[n].place - first] = static_cast<std::uint32_t>(n);
   }
-}
-
-std::uint32_t PlanarHierarchy::cellsBefore(const Tile& tile, unsigned bit) const
-{
-  const unsigned eighth = bit >> 3U;
-  return tile.first_cell + tile.rank[eighth] + kBitCounts.of[tile.occupied >> (8 * eighth) & ((1U << (bit & 7U)) - 1U)];
-}
-
-CellContents::Block PlanarHierarchy::blockOf(const Tile& tile, int level, int x, int y) const
-{
-  const unsigned first = alongCurve(static_cast<std::uint32_t>(x), static_cast<std::uint32_t>(y)) << (2 * level);
-  const std::uint32_t begin = cellsBefore(tile, first);
-  if (level == 0) return {begin, begin + 1};
-  if (level == 1) return {begin, begin + kBitCounts.of[tile.occupied >> first & 15U]};
-  const auto cells = static_cast<unsigned>(tile.occupied >> first & 0xFFFFU);
-  return {begin, begin + kBitCounts.of[cells & 255U] + kBitCounts.of[cells >> 8U]};
 }
 
 void PlanarHierarchy::link(float distance)
@@ -273,41 +282,59 @@ void PlanarHierarchy::linkTiles(int level, int reach, float distance)
     if (!isSettled(tile)) linkTile(tile, level, reach, distance);
 }
 
+/// Notes the blocks of a tile in the window, whose bottom left tile is at row and column 0.
+void PlanarHierarchy::lookAt(const Tile& tile, int level, int row, int column)
+{
+  std::uint32_t cell = tile.first_cell;
+  const int side = kSide >> level, blocks = side * side, cells = 1 << (2 * level);
+  const std::uint64_t mask = (std::uint64_t{1} << cells) - 1;
+  for (int block = 0; block < blocks; ++block)
+  {
+    const std::uint64_t occupied = tile.occupied >> (block * cells) & mask;
+    if (occupied == 0) continue;
+    const CurvePlace at = kCurve.of[block];
+    Window& window = window_[row + at.y][column + at.x];
+    window.block.begin = cell;
+    window.component = component_[cell];
+    cell += level == 0 ? 1U : kBitCounts.of[occupied & 255U] + kBitCounts.of[occupied >> 8U];
+    window.block.end = cell;
+  }
+}
+
 /// Joins each block of the tile with those after it in the tile, those of the tile right of it and those of the tiles
 /// above: half of all, the other half looks here.
 void PlanarHierarchy::linkTile(const Tile& tile, int level, int reach, float distance)
 {
-  static const Tile kEmpty = {};
-  const auto at = [this](std::uint32_t i) -> const Tile& { return i == kNone ? kEmpty : tiles_[i]; };
-  const Tile* const tiles[2][3] = {{&kEmpty, &tile, &at(tile.beside[0])},
-                                   {&at(tile.beside[1]), &at(tile.beside[2]), &at(tile.beside[3])}};
   const int side = kSide >> level;
-  std::uint32_t rows[kSide + 3];
-  for (int y = 0; y < side + reach; ++y)
+  std::uint32_t rows[2 * kSide] = {};  // a bit an occupied block
+  const auto take = [&](const Tile& other, int row, int column)
   {
-    rows[y] = 0;
-    for (int k = 0; k < 3; ++k)
-      rows[y] |= static_cast<std::uint32_t>(tiles[y / side][k]->rows[level][y % side]) << (k * side);
-  }
+    lookAt(other, level, row * side, column * side);
+    for (int y = 0; y < side; ++y)
+      rows[row * side + y] |= static_cast<std::uint32_t>(other.rows[level][y]) << (column * side);
+  };
+  take(tile, 0, 1);
+  if (tile.beside[0] != kNone) take(tiles_[tile.beside[0]], 0, 2);
+  for (int k = 0; k < 3; ++k)
+    if (tile.beside[1 + k] != kNone) take(tiles_[tile.beside[1 + k]], 1, k);
+
   const std::uint32_t window = (2U << (2 * reach)) - 1U;
   for (int y = 0; y < side; ++y)
     for (unsigned mine = tile.rows[level][y]; mine != 0; mine &= mine - 1U)
     {
-      const int x = __builtin_ctz(mine);
-      const CellContents::Block block = blockOf(tile, level, x, y);
+      const int x = side + __builtin_ctz(mine);
+      const Window& from = window_[y][x];
       for (int row = std::max(0, y - reach); row <= y + reach; ++row)
       {
         // below: only the tile on the right; beside: only what is right of it
-        const std::uint32_t from = row < y ? 2 * side : row == y ? side + x + 1 : 0;
-        std::uint32_t others = rows[row] & window << (side + x - reach) & ~0U << from;
+        const int first = row < y ? 2 * side : row == y ? x + 1 : 0;
+        std::uint32_t others = rows[row] & window << (x - reach) & ~0U << first;
         for (; others != 0; others &= others - 1U)
         {
-          const int column = __builtin_ctz(others);
-          const CellContents::Block other =
-              blockOf(*tiles[row / side][column / side], level, column % side, row % side);
-          if (component_[block.begin] != component_[other.begin] &&
-              sets_.find(block.begin) != sets_.find(other.begin) && cells_.areCloser(block, other, distance))
-            sets_.unite(block.begin, other.begin);
+          const Window& to = window_[row][__builtin_ctz(others)];
+          if (from.component != to.component && sets_.find(from.block.begin) != sets_.find(to.block.begin) &&
+              cells_.areCloser(from.block, to.block, distance))
+            sets_.unite(from.block.begin, to.block.begin);
         }
       }
     }

@@ -8,4 +8,5 @@ namespace lidar_panoptic_clustering
 void bindSegmenter(pybind11::module& module);
 void bindStreams(pybind11::module& module);
 void bindData(pybind11::module& module);
+void bindBenchmark(pybind11::module& module);
 }  // namespace lidar_panoptic_clustering

@@ -9,4 +9,5 @@ PYBIND11_MODULE(_core, module)
   bindSegmenter(module);
   bindStreams(module);
   bindData(module);
+  bindBenchmark(module);
 }

@@ -37,21 +37,19 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
 bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance)
 {
   reach_.assign(objects.size(), {kFar, -kFar, kFar, -kFar});
-  order_.resize(objects.size());
-  std::iota(order_.begin(), order_.end(), 0U);
-  std::sort(order_.begin(), order_.end(),
-            [&objects](std::uint32_t a, std::uint32_t b)
-            { return objects[a].footprint.minX() < objects[b].footprint.minX(); });
+  by_min_x_.clear();
+  for (std::uint32_t k = 0; k < objects.size(); ++k) by_min_x_.push_back({objects[k].footprint.minX(), k});
+  std::sort(by_min_x_.begin(), by_min_x_.end(), [](const Start& a, const Start& b) { return a.min_x < b.min_x; });
 
   bool found = false;
   std::size_t pairs_left = kMostPairs * objects.size();
-  for (std::size_t i = 0; i < order_.size(); ++i)
+  for (std::size_t i = 0; i < by_min_x_.size(); ++i)
   {
-    const RefinedObject& a = objects[order_[i]];
-    for (std::size_t j = i + 1; j < order_.size(); ++j)
+    const RefinedObject& a = objects[by_min_x_[i].object];
+    for (std::size_t j = i + 1; j < by_min_x_.size(); ++j)
     {
-      const RefinedObject& b = objects[order_[j]];
-      if (b.footprint.minX() - a.footprint.maxX() >= distance) break;
+      if (by_min_x_[j].min_x - a.footprint.maxX() >= distance) break;
+      const RefinedObject& b = objects[by_min_x_[j].object];
       if (pairs_left-- == 0)
       {
         reach_.assign(objects.size(), {-kFar, kFar, -kFar, kFar});
@@ -59,8 +57,8 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
       }
       if (table[a.class_index].group != table[b.class_index].group) continue;
       if (!a.footprint.mayBeCloser(b.footprint, distance)) continue;
-      reach_[order_[i]].add(b.footprint, distance);
-      reach_[order_[j]].add(a.footprint, distance);
+      reach_[by_min_x_[i].object].add(b.footprint, distance);
+      reach_[by_min_x_[j].object].add(a.footprint, distance);
       found = true;
     }
   }
@@ -91,8 +89,14 @@ void ClassBridging::uniteClose(const ThingScan& scan, const std::vector<std::uin
   cells_.link(distance);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
   {
-    const std::uint32_t whole = object_of_thing[cells_.firstThing(cells_.components()[cell])];
-    cells_.forEach(cell, [&](std::uint32_t thing) { sets_.unite(object_of_thing[thing], whole); });
+    std::uint32_t last = object_of_thing[cells_.firstThing(cells_.components()[cell])];
+    cells_.forEach(cell,
+                   [&](std::uint32_t thing)
+                   {
+                     const std::uint32_t object = object_of_thing[thing];
+                     if (object != last) sets_.unite(object, last);
+                     last = object;
+                   });
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -160,12 +160,15 @@ void ClusterNodelet::process(const LabelledCloud& cloud)
       pipeline_->reconfigure(pending->pipeline, std::move(pending->clusterer));
   }
 
-  pipeline_->segment(cloud);
   if (output_.getNumSubscribers() > 0)
   {
-    const PanopticCloud::Ptr out(new PanopticCloud);
-    pipeline_->paint(cloud, *out);
+    const PanopticCloud::Ptr out = pool_.take();
+    pipeline_->process(cloud, *out);
     output_.publish(pcl::ros_ptr(out));
+  }
+  else
+  {
+    pipeline_->segment(cloud);
   }
   if (markers_.getNumSubscribers() + objects_.listeners() > 0) publishObjects(cloud.header);
   const StageTimes& times = pipeline_->times();

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/pipeline/factory.h"
 #include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/refinement/instance_boxes.h"
@@ -70,6 +71,7 @@ private:
   void warnOfUnknownLabels();
 
   const std::string algorithm_;
+  CloudPool<PanopticCloud> pool_;
   std::unique_ptr<FramePipeline> pipeline_;  ///< the thread's own once it runs
   InstanceBoxes boxes_;
   InstanceMarkers marker_list_;

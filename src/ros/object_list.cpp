@@ -6,10 +6,9 @@
 
 namespace lidar_panoptic_clustering
 {
-double rounded(double value)
+double rounded(double value, double steps)
 {
-  constexpr double kSteps = 1e4;
-  return std::round(value * kSteps) / kSteps + 0.0;  // no -0
+  return std::round(value * steps) / steps + 0.0;  // no -0
 }
 
 void setClass(const ClassTable& table, ClassIndex class_index, Object& object)
@@ -24,8 +23,8 @@ void setBox(const InstanceBox& box, Object& object)
   object.pose.position.x = rounded(box.x);
   object.pose.position.y = rounded(box.y);
   object.pose.position.z = rounded(box.z);
-  object.pose.orientation.z = std::sin(0.5 * box.yaw);
-  object.pose.orientation.w = std::cos(0.5 * box.yaw);
+  object.pose.orientation.z = rounded(std::sin(0.5 * box.yaw), 1e6);
+  object.pose.orientation.w = rounded(std::cos(0.5 * box.yaw), 1e6);
   object.size.x = rounded(box.length);
   object.size.y = rounded(box.width);
   object.size.z = rounded(box.height);

@@ -12,8 +12,8 @@
 
 namespace lidar_panoptic_clustering
 {
-/// To a tenth of a millimetre, so that a printed message can be read.
-double rounded(double value);
+/// To one of so many steps in a unit, a tenth of a millimetre, so that a printed message can be read.
+double rounded(double value, double steps = 1e4);
 
 /// What a message says of a class: its name and canonical id.
 void setClass(const ClassTable& table, ClassIndex class_index, Object& object);

@@ -99,7 +99,7 @@ Marker TrackMarkers::trailMarker(const Trail& trail, std::uint32_t rgb, const Ei
   marker.type = Marker::LINE_STRIP;
   marker.pose.orientation.w = 1.0;
   marker.scale.x = 0.12;
-  marker.color = toColor(rgb, 1.0F);
+  marker.color = toColor(rgb, 0.99F);  // RViz looks at the points' alpha only where this is below 1
   const std::uint32_t kept = std::min<std::uint32_t>(trail.count, kKept);
   for (std::uint32_t k = 0; k < kept; ++k)
   {

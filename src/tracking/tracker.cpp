@@ -236,6 +236,16 @@ void Tracker::vote(std::uint32_t track, const Observation& observation)
   tracks_[track].prior_class = winner;
 }
 
+/// Whether a track's votes are clearly against the class that a scan gives it. Where they are even, either may be right,
+/// and to change the scan's own class would gain nothing.
+bool Tracker::isOverruled(std::uint32_t track, ClassIndex seen) const
+{
+  constexpr float kClearly = 2.0F;  // two thirds of the votes
+  if (track == kNone) return false;
+  const float* votes = votes_.data() + track * table_->size();
+  return votes[tracks_[track].object.class_index] >= kClearly * votes[seen];
+}
+
 std::uint32_t Tracker::bear(std::int64_t stamp_us, const Observation& observation, const Eigen::Vector3d& origin)
 {
   Track track;
@@ -275,7 +285,8 @@ void Tracker::giveIds(std::int64_t stamp_us, const Observations& observations, b
       object.first_seen_us = object.last_seen_us = stamp_us;
       object.scans = 1;
     }
-    if (!config_.vote_over_time) object.class_index = observation.class_index;
+    if (!config_.vote_over_time || !isOverruled(track_of_[i], observation.class_index))
+      object.class_index = observation.class_index;
   }
 }
 }  // namespace lidar_panoptic_clustering

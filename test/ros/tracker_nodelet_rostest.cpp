@@ -231,21 +231,15 @@ TEST_F(TrackerNodelet, SubscribesOnlyWhileSomeoneListens)
   const auto input = advertise<PanopticCloud>(name_ + "/input");
   ros::WallDuration(0.3).sleep();
   EXPECT_EQ(input.getNumSubscribers(), 0U);
-  for (const char* topic : {"/objects", "/markers", "/output"})
+  const auto follows = [&](auto listener)
   {
-    auto listener = std::make_unique<ros::Subscriber>();
-    if (std::strcmp(topic, "/objects") == 0)
-      *listener = ros::NodeHandle().subscribe<ObjectArray>(name_ + topic, 1, [](const ObjectArrayConstPtr&) {});
-    else if (std::strcmp(topic, "/markers") == 0)
-      *listener = ros::NodeHandle().subscribe<visualization_msgs::MarkerArray>(
-          name_ + topic, 1, [](const visualization_msgs::MarkerArrayConstPtr&) {});
-    else
-      *listener = ros::NodeHandle().subscribe<PanopticCloud>(name_ + topic, 1,
-                                                             [](const boost::shared_ptr<const PanopticCloud>&) {});
-    EXPECT_TRUE(eventually([&] { return input.getNumSubscribers() == 1; })) << topic;
+    EXPECT_TRUE(eventually([&] { return input.getNumSubscribers() == 1; }));
     listener.reset();
-    EXPECT_TRUE(eventually([&] { return input.getNumSubscribers() == 0; })) << topic;
-  }
+    EXPECT_TRUE(eventually([&] { return input.getNumSubscribers() == 0; }));
+  };
+  follows(std::make_unique<Probe<ObjectArray>>(name_ + "/objects"));
+  follows(std::make_unique<Probe<visualization_msgs::MarkerArray>>(name_ + "/markers"));
+  follows(std::make_unique<Probe<PanopticCloud>>(name_ + "/output"));
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace lidar_panoptic_clustering
@@ -31,9 +32,7 @@ public:
   void add(float x, float y)
   {
     const float along[kAxes] = {x, y, x + y, x - y};
-    bool is_outside = false;  // hardly any point is: one branch instead of eight
-    for (int k = 0; k < kAxes; ++k) is_outside |= (along[k] > max_[k]) | (along[k] < min_[k]);
-    if (is_outside) extend(along, {x, y});
+    if (isOutside(along)) extend(along, {x, y});  // hardly any point is: one branch instead of eight
   }
 
   /// Widens the outline to hold another one.
@@ -88,6 +87,19 @@ private:
   static constexpr int kAxes = 4;  // x, y and the two diagonals
   static constexpr float kFar = std::numeric_limits<float>::infinity();
 
+  bool isOutside(const float (&along)[kAxes]) const
+  {
+    using Floats = float __attribute__((vector_size(16)));
+    Floats at, most, least;
+    std::memcpy(&at, along, sizeof(at));
+    std::memcpy(&most, max_, sizeof(most));
+    std::memcpy(&least, min_, sizeof(least));
+    const auto outside = (at > most) | (at < least);
+    std::uint64_t halves[2];
+    std::memcpy(halves, &outside, sizeof(halves));
+    return (halves[0] | halves[1]) != 0;
+  }
+
   void extend(const float (&along)[kAxes], const PlanarPoint& point)
   {
     for (int k = 0; k < kAxes; ++k)
@@ -127,9 +139,7 @@ private:
 inline void OrderedFootprint::add(float x, float y, std::uint32_t order)
 {
   const float along[kAxes] = {x, y, x + y, x - y};
-  bool is_outside = false;
-  for (int k = 0; k < kAxes; ++k) is_outside |= (along[k] > outline_.max_[k]) | (along[k] < outline_.min_[k]);
-  if (!is_outside) return;
+  if (!outline_.isOutside(along)) return;
   for (int k = 0; k < kAxes; ++k)
   {
     if (along[k] > outline_.max_[k]) order_[k] = order;

@@ -63,13 +63,24 @@ private:
     std::uint64_t occupied = 0;              ///< a bit a cell, along the Z-curve
     std::uint32_t first_cell;                ///< its cells lie in order of their bits
     std::array<std::uint32_t, 4> beside;     ///< tiles right, and above: left, middle, right
-    std::array<std::uint8_t, kSide> rank;    ///< cells before each eighth of `occupied`
     std::uint8_t rows[kLevels][kSide] = {};  ///< a bit an occupied block, row by row
+  };
+  /// Points added one after the other that lie in one cell.
+  struct Run
+  {
+    std::uint64_t key;    ///< place of the tile, then along the curve
+    std::uint32_t begin;  ///< of added_; the next one's is its end
+  };
+  /// A block near the tile in hand.
+  struct Window
+  {
+    CellContents::Block block;
+    std::uint32_t component;
   };
 
   void sortIntoCells();
   void sortBySteps(int bits);
-  void addPoint(std::uint64_t key, std::uint32_t added);
+  void placeRun(std::uint32_t run);
   void closeTiles();
   void findNeighbours();
   void uniteBlocks(int level);
@@ -77,22 +88,23 @@ private:
   bool isSettled(const Tile& tile) const;
   void linkTiles(int level, int reach, float distance);
   void linkTile(const Tile& tile, int level, int reach, float distance);
-  CellContents::Block blockOf(const Tile& tile, int level, int x, int y) const;
-  std::uint32_t cellsBefore(const Tile& tile, unsigned bit) const;
+  void lookAt(const Tile& tile, int level, int row, int column);
 
   float distance_ = 0.0F, cells_per_m_ = 0.0F;
   std::vector<PlanarSample> added_;
-  std::vector<std::uint64_t> entries_, entries_aside_;  ///< place above, number of the point below
-  std::vector<std::uint32_t> counts_;
+  std::vector<Run> runs_;
+  std::vector<std::uint64_t> entries_, entries_aside_;  ///< a run's key above, its number below
+  std::vector<std::uint32_t> counts_, order_;
   std::vector<std::uint32_t> cell_of_added_;
-  std::int32_t origin_x_ = 0, origin_y_ = 0;
   std::uint64_t stride_ = 1;  ///< tiles a row
   std::uint64_t last_key_ = 0;
-  std::uint32_t placed_ = 0;  ///< points that have their cell
+  CellContents::Place tile_at_{};  ///< of the last tile
+  std::uint32_t placed_ = 0;       ///< points that have their cell
 
   CellContents cells_;
   std::vector<Tile> tiles_;
-  std::vector<std::uint32_t> uniform_;  ///< by tile: the component of all its cells, kNone where there are several
+  std::vector<std::uint32_t> uniform_;   ///< by tile: the component of all its cells, kNone where there are several
+  Window window_[2 * kSide][3 * kSide];  ///< the tile in hand in the middle below, and those beside and above
   DisjointSets sets_;
   std::vector<std::uint32_t> component_;
   int level_ = -1;  ///< of the blocks whose cells are joined; -1 before the first link()

@@ -34,13 +34,19 @@ private:
     bool contains(float x, float y) const { return x >= min_x && x <= max_x && y >= min_y && y <= max_y; }
   };
 
+  struct Start
+  {
+    float min_x;
+    std::uint32_t object;
+  };
+
   bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
   void sortByGroup(const ThingScan& scan, const ClassTable& table, const std::vector<RefinedObject>& objects,
                    const std::vector<std::uint32_t>& object_of_thing);
   void uniteClose(const ThingScan& scan, const std::vector<std::uint32_t>& things, float distance,
                   const std::vector<std::uint32_t>& object_of_thing);
 
-  std::vector<std::uint32_t> order_;                         ///< objects by least x
+  std::vector<Start> by_min_x_;                              ///< objects
   std::vector<Reach> reach_;                                 ///< by object
   std::vector<std::vector<std::uint32_t>> things_of_group_;  ///< within reach of another object
   PlanarHierarchy cells_;                                    ///< of a group's

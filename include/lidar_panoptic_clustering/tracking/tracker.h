@@ -17,7 +17,7 @@ namespace lidar_panoptic_clustering
 struct TrackerConfig
 {
   double max_missed_s = 1.5;   ///< an object that is not seen for longer is a new one when it comes again
-  bool vote_over_time = true;  ///< an object has the class it had most often, its points too
+  bool vote_over_time = true;  ///< an object has the class it had most often, where that is clear; its points too
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -31,7 +31,7 @@ struct TrackerConfig
 struct TrackedObject
 {
   std::uint32_t track = 0;                                        ///< its id, from 1; never given twice by one tracker
-  ClassIndex class_index = kUnknownClass;                         ///< voted over its life
+  ClassIndex class_index = kUnknownClass;                         ///< voted over its life, see TrackerConfig
   std::int64_t first_seen_us = 0, last_seen_us = 0;               ///< stamps
   std::uint32_t scans = 0;                                        ///< in which it was seen
   Eigen::Vector2d position = Eigen::Vector2d::Zero();             ///< of a point that moves with it, fixed frame [m]
@@ -124,6 +124,7 @@ private:
   static void tellMotion(Track& track);
   void follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin);
   void vote(std::uint32_t track, const Observation& observation);
+  bool isOverruled(std::uint32_t track, ClassIndex seen) const;
   void dropLost(std::int64_t stamp_us);
   void giveIds(std::int64_t stamp_us, const Observations& observations, bool is_new);
   std::uint32_t bear(std::int64_t stamp_us, const Observation& observation, const Eigen::Vector3d& origin);

@@ -5,7 +5,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
-#include <cstdlib>
+#include <cerrno>
 #include <filesystem>
 #include <stdexcept>
 #include <string>
@@ -24,7 +24,7 @@ inline std::string pythonFolder()
   for (const char* place : {"../python3/dist-packages", "../python", "../lib/python3/dist-packages"})
   {
     const auto folder = (program.parent_path() / place).lexically_normal();
-    if (std::filesystem::exists(folder / "lidar_panoptic_clustering" / "plot.py", error)) return folder.string();
+    if (std::filesystem::exists(folder / "lidar_panoptic_clustering" / "__init__.py", error)) return folder.string();
   }
   return "";
 }
@@ -46,8 +46,8 @@ inline std::vector<std::string> pythonEnvironment()
   return variables;
 }
 
-/// Exit status; 127 where there is no such program. A quiet one prints nothing.
-inline int runPython(const std::vector<std::string>& command, bool quiet)
+/// Exit status; 127 where there is no such program. `silenced`: of STDOUT_FILENO and STDERR_FILENO.
+inline int runPython(const std::vector<std::string>& command, const std::vector<int>& silenced)
 {
   const std::vector<std::string> environment = pythonEnvironment();
   std::vector<char*> arguments, variables;
@@ -57,9 +57,7 @@ inline int runPython(const std::vector<std::string>& command, bool quiet)
 
   posix_spawn_file_actions_t files;
   posix_spawn_file_actions_init(&files);
-  if (quiet)
-    for (const int stream : {STDOUT_FILENO, STDERR_FILENO})
-      posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_WRONLY, 0);
+  for (const int stream : silenced) posix_spawn_file_actions_addopen(&files, stream, "/dev/null", O_WRONLY, 0);
   pid_t child = 0;
   const int failed = posix_spawnp(&child, arguments[0], &files, nullptr, arguments.data(), variables.data());
   posix_spawn_file_actions_destroy(&files);
@@ -75,14 +73,14 @@ inline int runPython(const std::vector<std::string>& command, bool quiet)
 /// what to run once it is there.
 inline void plotReport(const std::string& report, const std::string& folder)
 {
-  const std::string later =
-      "the report is in " + report + ", and drawn by: python3 -m lidar_panoptic_clustering plot --output " + folder +
-      " " + report;
+  const std::string later = "the report is in " + report +
+                            ", and drawn by: python3 -m lidar_panoptic_clustering plot --output " + folder + " " +
+                            report;
   for (const char* python : {"python3", "/usr/bin/python3"})
   {
-    if (detail::runPython({python, "-c", "import matplotlib"}, true) != 0) continue;
+    if (detail::runPython({python, "-c", "import matplotlib"}, {STDOUT_FILENO, STDERR_FILENO}) != 0) continue;
     const int status = detail::runPython(
-        {python, "-m", "lidar_panoptic_clustering", "plot", "--output", folder, report}, false);
+        {python, "-m", "lidar_panoptic_clustering", "plot", "--output", folder, report}, {STDOUT_FILENO});
     if (status == 0) return;
     throw std::runtime_error("the charts were not drawn, " + std::string(python) + " ended with status " +
                              std::to_string(status) +
@@ -91,7 +89,8 @@ inline void plotReport(const std::string& report, const std::string& folder)
                              later);
   }
   throw std::runtime_error(
-      "the charts were not drawn, they need python3 with matplotlib: apt-get install python3-matplotlib, or pip install "
+      "the charts were not drawn, they need python3 with matplotlib: apt-get install python3-matplotlib, or pip "
+      "install "
       "matplotlib; " +
       later);
 }
