@@ -39,7 +39,7 @@ def draw(points, instances, objects, names, path):
     figure, axes = plt.subplots(figsize=(10, 10))
     stuff = instance == 0
     axes.scatter(x[stuff], y[stuff], s=0.2, c='0.75', linewidths=0)
-    color = plt.get_cmap('tab20')(instance[~stuff] % 20)
+    color = plt.get_cmap('hsv')(instance[~stuff] * 0.618034 % 1.0)  # neighbours in number lie far apart in hue
     axes.scatter(x[~stuff], y[~stuff], s=2, c=color, linewidths=0)
     for one in objects:
         outline = corners(one['box'])
