@@ -9,9 +9,10 @@ namespace lidar_panoptic_clustering
 /// std::runtime_error with `path` and the system's reason.
 std::string makeAside(const std::string& path);
 
-/// A file that is there whole or not at all: written beside its place, as makeAside() has it, and renamed. Opened
-/// before a long computation, it shows at once that its place cannot be written. Removes what it began when it is
-/// destroyed without save(). Processes that write the same file do not meet: the last to save wins.
+/// A file that is there whole or not at all: written without a name, which it gets when it is saved, so that nothing is
+/// left of it however its process ends. On file systems that have no such files it is written beside its place, as
+/// makeAside() has it, and renamed. Opened before a long computation, it shows at once that its place cannot be
+/// written. Processes that write the same file do not meet: the last to save wins.
 ///
 /// What exists and is no regular file, a pipe or /dev/stdout, is written to as it is: renaming would replace it.
 class AsideFile
@@ -32,7 +33,10 @@ public:
   bool saveIfNone(const std::string& text);
 
 private:
-  std::string path_, aside_;
+  int nameIt();
+
+  std::string path_, aside_;  ///< the second is empty where the file has no name, or is written as it is
   int file_ = -1;
+  bool nameless_ = false;
 };
 }  // namespace lidar_panoptic_clustering

@@ -112,8 +112,8 @@ private:
   void load()
   {
     const auto& nh = getPrivateNodeHandle();
-    warnOfUnusedParameters(
-        nh, namesOf(describeParameters(config_), {"frame_id", "class_table", "dataset", "sequence", "semantics"}));
+    warnOfUnusedParameters(nh, namesOf(describeParameters(config_),
+                                       {"frame_id", "class_table", "dataset", "sequence", "semantics", "label_table"}));
     applyParameters(config_, readParameters(nh, describeParameters(config_)));
     frame_id_ = readFrameId(nh);
     table_ = std::make_shared<const ClassTable>(ClassTable::load(readText(nh, "class_table", "semantic_kitti")));

@@ -3,15 +3,21 @@
 #include "lidar_panoptic_clustering/projection/grid_finder.h"
 #include "lidar_panoptic_clustering/projection/raw_cloud.h"
 
+#include <algorithm>
 #include <stdexcept>
 #include <string>
 #include <vector>
 
 namespace lidar_panoptic_clustering
 {
+/// Whether a cloud says that it is one row, or one column, of several points.
+inline bool isOneRow(const RawCloud& raw)
+{
+  return std::min(raw.width, raw.height) == 1 && std::max(raw.width, raw.height) > 1;
+}
+
 /// What the sequence of a cloud's points looks like, for messages: "firing after firing", "in neighbouring
-/// directions" or "in no
-/// order of scan lines". Looks at about a thousand pairs.
+/// directions" or "in no order of scan lines". Looks at about a thousand pairs.
 std::string sequenceOf(const std::vector<ScanPoint>& points);
 
 /// A cloud of rows and columns that are no scan lines.

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -94,9 +95,10 @@ void LayoutProbe::Direction::add(std::size_t line, const Pixel& here, const Pixe
 void LayoutProbe::look(const RawCloud& cloud, const ScanFields& fields)
 {
   has_ring_ = fields.ring != nullptr;
-  // an odd stride visits all columns of a cloud whose width is a power of two
+  // visits all columns whichever way the points are laid, for it shares no factor with rows or columns
   constexpr std::size_t kPixels = 1024;
-  const std::size_t stride = (std::size_t{cloud.width} * cloud.height / kPixels) | 1U;
+  std::size_t stride = (std::size_t{cloud.width} * cloud.height / kPixels) | 1U;
+  while (std::gcd(stride, std::size_t{cloud.width} * cloud.height) > 1) ++stride;
   gather(cloud, fields, stride);
   if (!enough() && stride > 1) gather(cloud, fields, 1);
 }

@@ -96,14 +96,29 @@ void RingOrder::countSteps()
   }
 }
 
-/// Directions along one ring have one elevation over the sensor's axis: that along which they vary least within rings.
-Eigen::Vector3d RingOrder::axisOfRings() const
+Eigen::Matrix3d RingOrder::scatterWithinRings() const
 {
   Eigen::Matrix3d within = Eigen::Matrix3d::Zero();
   for (const Ring& ring : rings_)
     if (ring.count > 0) within += ring.sum_of_products - ring.sum * ring.sum.transpose() / ring.count;
-  Eigen::Vector3d axis = Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(within).eigenvectors().col(0);
+  return within;
+}
+
+/// Directions along one ring have one elevation over the sensor's axis: that along which they vary least within rings.
+Eigen::Vector3d RingOrder::axisOfRings() const
+{
+  const Eigen::Vector3d axis =
+      Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d>(scatterWithinRings()).eigenvectors().col(0);
   return axis.z() < 0.0 ? Eigen::Vector3d(-axis) : axis;
+}
+
+std::optional<double> RingOrder::tiltOfAxis() const
+{
+  constexpr double kClearly =
+      0.1;  // of the next larger variance; 1e-4 in KITTI's scans, 0.2 where rings are cut wrongly
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver(scatterWithinRings());
+  if (seen_ < 2 || !(solver.eigenvalues()[0] < kClearly * solver.eigenvalues()[1])) return std::nullopt;
+  return std::acos(std::min(1.0, std::abs(solver.eigenvectors().col(0).z())));
 }
 
 bool RingOrder::isMonotone() const

@@ -16,6 +16,11 @@ constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kFullTurn = 6.28318530717958648;
 constexpr std::uint32_t kMinColumns = 16, kMaxColumns = 16384;
 
+float sineOfElevation(const ScanPoint& p)
+{
+  return p.z / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z);
+}
+
 /// A small angle given by its sine.
 std::string degrees(double sine)
 {
@@ -102,21 +107,31 @@ void RowFinder::unfold(const std::vector<ScanPoint>& scan, const Sweep& sweep)
   constexpr std::size_t kStride = 16;
   constexpr float kSmallStep = 0.2F;  // [rad]
   const float sense = sweep.clockwise ? -1.0F : 1.0F;
-  elevation_steps_ = forward_ = backward_ = 0;
-  const ScanPoint* last = nullptr;
-  std::uint32_t ring = 0;
+  forward_ = backward_ = 0;
+  steps_.clear();
   for (std::size_t i = kStride; i < directions_.size(); i += kStride)
   {
     const float step = sense * (directions_[i].azimuth - directions_[i - 1].azimuth);  // NaN goes no way
     forward_ += step > 0.0F && step < kSmallStep;
     backward_ += step < 0.0F && step > -kSmallStep;
+    if (!std::isnan(step)) steps_.push_back(std::abs(sineOfElevation(scan[i]) - sineOfElevation(scan[i - 1])));
   }
-  const auto sine = [](const ScanPoint& p) { return p.z / std::sqrt(p.x * p.x + p.y * p.y + p.z * p.z); };
+  countElevationSteps(scan);
+}
+
+/// Rings that begin with a step of the elevation.
+void RowFinder::countElevationSteps(const std::vector<ScanPoint>& scan)
+{
+  // in a tilted frame the largest steps within a ring are 1.6 times the usual one
+  const float least = std::max(kElevationStep, 3.0F * usualStep(steps_));
+  elevation_steps_ = 0;
+  const ScanPoint* last = nullptr;
+  std::uint32_t ring = 0;
   for (std::size_t i = 0; i < scan.size(); ++i)
   {
     if (std::isnan(directions_[i].azimuth)) continue;
     if (directions_[i].row != ring && last != nullptr)
-      elevation_steps_ += std::abs(sine(scan[i]) - sine(*last)) > kElevationStep;
+      elevation_steps_ += std::abs(sineOfElevation(scan[i]) - sineOfElevation(*last)) > least;
     last = &scan[i];
     ring = directions_[i].row;
   }

@@ -19,6 +19,14 @@ float turn(float angle)
 }
 }  // namespace
 
+float usualStep(std::vector<float>& steps)
+{
+  if (steps.empty()) return 0.0F;
+  const auto middle = steps.begin() + static_cast<std::ptrdiff_t>(steps.size() / 2);
+  std::nth_element(steps.begin(), middle, steps.end());
+  return *middle;
+}
+
 std::optional<Sweep> SweepFinder::find(const std::vector<ScanPoint>& scan)
 {
   gather(scan);
@@ -53,16 +61,12 @@ std::optional<bool> SweepFinder::goesClockwise() const
   return right > left;
 }
 
-/// Several times what elevations usually differ by from return to return, as beams beside the axis make them.
 float SweepFinder::leastStep()
 {
   steps_.clear();
   for (std::size_t i = 1; i < returns_.size(); i += 7)
     steps_.push_back(std::abs(returns_[i].sine - returns_[i - 1].sine));
-  if (steps_.empty()) return kElevationStep;
-  const auto middle = steps_.begin() + static_cast<std::ptrdiff_t>(steps_.size() / 2);
-  std::nth_element(steps_.begin(), middle, steps_.end());
-  return std::max(kElevationStep, 4.0F * *middle);
+  return std::max(kElevationStep, 4.0F * usualStep(steps_));
 }
 
 void SweepFinder::countArcs(bool clockwise)

@@ -10,11 +10,14 @@
 #include "lidar_panoptic_clustering/evaluation/object_recall.h"
 #include "lidar_panoptic_clustering/projection/sensor_model.h"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/wait.h>
 #include <unistd.h>
 
 #include <cerrno>
 #include <cmath>
+#include <csignal>
 #include <filesystem>
 #include <fstream>
 #include <locale>
@@ -153,7 +156,7 @@ TEST_F(AsideFileTest, IsThereWholeOrNotAtAll)
   const fs::path path = folder_ / "f";
   {
     AsideFile one(path.string()), two(path.string()), never(path.string());
-    EXPECT_EQ(files(), 3U);
+    EXPECT_FALSE(fs::exists(path));
     one.save("one");
     EXPECT_EQ(read(path), "one");
     two.write("t", 1), two.save("wo");
@@ -164,6 +167,38 @@ TEST_F(AsideFileTest, IsThereWholeOrNotAtAll)
   EXPECT_TRUE(AsideFile((folder_ / "g").string()).saveIfNone("new"));
   EXPECT_EQ(read(folder_ / "g"), "new");
   EXPECT_EQ(files(), 2U);
+}
+
+TEST_F(AsideFileTest, AKilledProcessLeavesNothing)
+{
+  const int nameless = ::open(folder_.c_str(), O_WRONLY | O_TMPFILE, 0600);
+  if (nameless < 0) GTEST_SKIP() << "the file system of " << folder_ << " has no files without a name";
+  ::close(nameless);
+  const pid_t child = ::fork();
+  if (child == 0)
+  {
+    AsideFile begun((folder_ / "f").string());
+    begun.write("half", 4);
+    ::kill(::getpid(), SIGKILL);
+  }
+  int status = 0;
+  ASSERT_EQ(::waitpid(child, &status, 0), child);
+  ASSERT_TRUE(WIFSIGNALED(status));
+  EXPECT_EQ(files(), 0U);
+}
+
+TEST_F(AsideFileTest, SaysWhyItCannotBeWritten)
+{
+  const std::string path = (folder_ / "none" / "f").string();
+  try
+  {
+    AsideFile file(path);
+    FAIL();
+  }
+  catch (const std::runtime_error& error)
+  {
+    EXPECT_EQ(error.what(), "cannot write " + path + ": No such file or directory");
+  }
 }
 
 TEST_F(AsideFileTest, FollowsNoLinkLaidInItsWay)

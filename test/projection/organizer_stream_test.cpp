@@ -160,6 +160,24 @@ TEST_F(OrganizerStream, RobosenseRowsAreSortedByElevation)
     }
 }
 
+/// Nearly as many rows as columns: laid the other way, a row would hold one ring and a bit of the next.
+TEST_F(OrganizerStream, ASectorWithNearlyAsManyFiringsAsRings)
+{
+  SyntheticLidar lidar;
+  for (int i = 0; i < 64; ++i) lidar.elevations_deg.push_back(16.0 - 0.5 * i);
+  lidar.firings = 60, lidar.field_of_view_deg = 30.0, lidar.start_deg = 15.0;
+  const SyntheticScan scan = scanOf(lidar);
+  for (const auto declared : {Declared::kRingsByFirings, Declared::kFiringsByRings})
+    for (const auto laid : {Laid::kRingAfterRing, Laid::kFiringAfterFiring})
+    {
+      const auto cloud = cloudOf(scan, {Channels::kHighestFirst, laid, declared, RingField::kNone});
+      Organizer organizer{withoutLabels()};
+      ASSERT_EQ(errorOf([&] { organizer.organize(cloud.message.view(), scan_); }), "");
+      EXPECT_EQ(scan_.image.cloud.height, 64U);
+      EXPECT_EQ(figuresOf(scan_, cloud, scan).right_rows, 1.0);
+    }
+}
+
 TEST_F(OrganizerStream, RingsInEitherSenseFromAnyAzimuth)
 {
   for (const bool clockwise : {false, true})

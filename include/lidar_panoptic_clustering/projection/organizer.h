@@ -101,6 +101,7 @@ private:
   Decision decideRings(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   Decision decideBeams(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   std::optional<Decision> decideUnfolded(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
+  Decision decideUnfoldedOnly(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   Decision takeInOrder(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
 
   Grid gridOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, Decision& decision);
@@ -108,6 +109,7 @@ private:
                                     const Grid& grid);
   void orderLines(const RawCloud& view, OrganizedScan& out, Decision& decision);
   void followRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
+  void followPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found);
   void place(std::uint32_t rows, Decision& decision, OrganizedScan& out);
   void project(std::uint32_t rows, std::uint32_t columns, OrganizedScan& out);

@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -44,6 +45,9 @@ public:
 
   /// Between the axis of the rings that could be told apart over it and the cloud's z.
   double tiltRad() const { return tilt_; }
+  /// Between the axis about which the rings turn and the cloud's z, whether or not z tells the rings apart. Empty where
+  /// they span too little of a turn, or are too blurred, to have one.
+  std::optional<double> tiltOfAxis() const;
   double scatterRad() const { return scatter_; }          ///< standard deviation within a ring, mean over rings
   double rangeRad() const { return highest_ - lowest_; }  ///< from the lowest ring's mean to the highest's
 
@@ -59,6 +63,7 @@ private:
   void recall();
   void lookAlong(const Eigen::Vector3d& axis);
   void countSteps();
+  Eigen::Matrix3d scatterWithinRings() const;
   Eigen::Vector3d axisOfRings() const;
   bool canBeSorted() const;
   void sortByElevation();

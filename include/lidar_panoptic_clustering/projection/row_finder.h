@@ -69,6 +69,7 @@ public:
 
 private:
   void unfold(const std::vector<ScanPoint>& scan, const Sweep& sweep);
+  void countElevationSteps(const std::vector<ScanPoint>& scan);
   std::uint32_t fullestRow();
   void orderRings(const std::vector<ScanPoint>& scan, std::uint32_t rings, bool remember);
 
@@ -78,6 +79,6 @@ private:
   std::uint32_t forward_ = 0, backward_ = 0;                ///< small steps in the sense of the sweep, of a sample
   std::vector<PointDirection> directions_;
   std::vector<std::uint32_t> returns_of_row_;
-  std::vector<float> azimuths_;
+  std::vector<float> azimuths_, steps_;
 };
 }  // namespace lidar_panoptic_clustering

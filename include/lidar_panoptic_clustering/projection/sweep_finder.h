@@ -13,6 +13,10 @@ namespace lidar_panoptic_clustering
 /// finest sensor there is, more than rounding. Of its sine.
 constexpr float kElevationStep = 9e-4F;
 
+/// The usual change of the elevation's sine from return to return, the median of `steps`, which it reorders; 0 where
+/// there are none. Beams beside the axis, noise and tilted frames make it.
+float usualStep(std::vector<float>& steps);
+
 /// Finds out which way, and from where, the rings of a scan run whose points come ring after ring.
 ///
 /// The sense is that of most small steps of the azimuth. From the last return of a ring to the first of the next one
