@@ -148,8 +148,9 @@ inline const std::map<std::string, std::function<Scans()>>& sceneList()
   {
     std::map<std::string, std::function<Scans()>> scenes = {
         {"street", [] { return simulatedScans(SensorModel::load("hdl64e"), 10); }},  // 26,000 things
-        {"street_128", [] { return simulatedScans(hdl128e(), 4); }},                 // 60,000
-        {"recorded", [] { return recordedScans(); }},                                // 5,000 to 10,000
+        {"street_in_a_row", [] { return simulatedScans(SensorModel::load("hdl64e"), 20, 1); }},
+        {"street_128", [] { return simulatedScans(hdl128e(), 4); }},  // 60,000
+        {"recorded", [] { return recordedScans(); }},                 // 5,000 to 10,000
         {"ten_thousand", [] { return withThings(recordedScans(), 10000); }},
         {"all_things", [] { return allThings(recordedScans()); }},  // 114,000
         {"street_all_things", [] { return allThings(simulatedScans(SensorModel::load("hdl64e"), 4)); }},
