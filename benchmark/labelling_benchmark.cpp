@@ -1,8 +1,9 @@
-// Labels without a network beside a plain copy of the scan: recorded SemanticKITTI scans where there are some, and
-// simulated ones.
-#include "benchmark_scans.h"
+// Labels without a network, and the whole way from a driver's cloud to objects without one, in copies of the labelled
+// 64 x 2048 cloud.
+#include "measure.h"
 
 #include "lidar_panoptic_clustering/labelling/ground_labeler.h"
+#include "lidar_panoptic_clustering/scan_to_objects/scan_to_objects.h"
 
 namespace lidar_panoptic_clustering
 {
@@ -11,23 +12,27 @@ namespace
 void label(benchmark::State& state, Scans scans)
 {
   GroundLabeler labeler{GroundLabelerConfig{}};
-  std::size_t i = 0;
-  for (auto _ : state) labeler.label(scans[i++ % scans.size()]);
+  measure(state, [&](std::size_t i) { labeler.label(scans[i % scans.size()]); });
 }
 
-std::unique_ptr<const std::pair<Scans, Scans>> addAll()
+/// From a cloud as Velodyne's driver organises it: rows are firings.
+void toObjects(benchmark::State& state, const Scans& scans)
 {
-  auto kept = std::make_unique<const std::pair<Scans, Scans>>(simulatedScans(SensorModel::load("hdl64e"), 10, 60),
-                                                              recordedScans());
-  const auto addScans = [](const std::string& source, const Scans& scans)
+  ScanToObjectsConfig config;
+  config.labeller.labels = "none";
+  ScanToObjects chain(config);
+  std::vector<RawMessage> messages;
+  for (const auto& scan : scans) messages.push_back(transposed(organisedMessage(scan)));
+  measure(state, [&](std::size_t i) { chain.process(messages[i % messages.size()].view()); });
+}
+
+void addAll()
+{
+  for (const std::string name : {"street", "recorded"})
   {
-    if (scans.empty()) return;
-    add(source + "/plain_copy", [&scans](benchmark::State& state) { plainCopy(state, scans); });
-    add(source + "/label", [&scans](benchmark::State& state) { label(state, scans); });
-  };
-  addScans("simulated", kept->first);
-  addScans("recorded", kept->second);
-  return kept;
+    addOn(name + "/label", name, [](benchmark::State& state, const Scans& scans) { label(state, scans); });
+    addOn(name + "/driver_to_objects", name, toObjects);
+  }
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -2,7 +2,7 @@
 //   euclidean: pcl::EuclideanClusterExtraction on all things, without voxels, class by class with the class's link
 //              distance, so that both do the same task
 //   supervoxel: pcl::SupervoxelClustering on the whole 64 x 2048 image, in which all but things is masked
-#include "benchmark_scans.h"
+#include "measure.h"
 
 #include <pcl/search/kdtree.h>
 #include <pcl/segmentation/extract_clusters.h>
@@ -21,41 +21,39 @@ void euclideanStraight(benchmark::State& state, const Scans& scans)
 {
   std::vector<ThingScan> things;
   for (const auto& scan : scans) things.push_back(thingsOf(scan));
-  std::size_t i = 0, found = 0;
-  for (auto _ : state)
-  {
-    const ThingScan& scan = things[i++ % things.size()];
-    found += scan.size();
-    std::map<ClassIndex, Cloud::Ptr> cloud_of_class;
-    for (std::size_t k = 0; k < scan.size(); ++k)
-    {
-      Cloud::Ptr& cloud = cloud_of_class[scan.class_index[k]];
-      if (!cloud) cloud.reset(new Cloud);
-      cloud->push_back({scan.points[k].x, scan.points[k].y, scan.points[k].z});
-    }
-    for (const auto& [class_index, cloud] : cloud_of_class)
-    {
-      pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>(false));
-      tree->setInputCloud(cloud);
-      pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
-      extraction.setInputCloud(cloud);
-      extraction.setSearchMethod(tree);
-      extraction.setClusterTolerance(scan.class_link_distance[class_index]);
-      extraction.setMinClusterSize(1);
-      extraction.setMaxClusterSize(std::numeric_limits<int>::max());
-      std::vector<pcl::PointIndices> clusters;
-      extraction.extract(clusters);
-      benchmark::DoNotOptimize(clusters.data());
-    }
-  }
-  setThings(state, found);
+  measure(state,
+          [&](std::size_t i)
+          {
+            const ThingScan& scan = things[i % things.size()];
+            std::map<ClassIndex, Cloud::Ptr> cloud_of_class;
+            for (std::size_t k = 0; k < scan.size(); ++k)
+            {
+              Cloud::Ptr& cloud = cloud_of_class[scan.class_index[k]];
+              if (!cloud) cloud.reset(new Cloud);
+              cloud->push_back({scan.points[k].x, scan.points[k].y, scan.points[k].z});
+            }
+            for (const auto& [class_index, cloud] : cloud_of_class)
+            {
+              pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>(false));
+              tree->setInputCloud(cloud);
+              pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
+              extraction.setInputCloud(cloud);
+              extraction.setSearchMethod(tree);
+              extraction.setClusterTolerance(scan.class_link_distance[class_index]);
+              extraction.setMinClusterSize(1);
+              extraction.setMaxClusterSize(std::numeric_limits<int>::max());
+              std::vector<pcl::PointIndices> clusters;
+              extraction.extract(clusters);
+              benchmark::DoNotOptimize(clusters.data());
+            }
+          });
+  setThings(state, scans);
 }
 
 void supervoxelStraight(benchmark::State& state, const Scans& scans)
 {
   constexpr float kNone = std::numeric_limits<float>::quiet_NaN();
   std::vector<Cloud::Ptr> images;
-  std::size_t i = 0, found = 0;
   for (const auto& scan : scans)
   {
     images.emplace_back(new Cloud(scan.width, scan.height, pcl::PointXYZ(kNone, kNone, kNone)));
@@ -68,32 +66,33 @@ void supervoxelStraight(benchmark::State& state, const Scans& scans)
         images.back()->at(static_cast<int>(p.column), static_cast<int>(row)) = {p.x, p.y, p.z};
       }
   }
-  for (auto _ : state)
-  {
-    pcl::SupervoxelClustering<pcl::PointXYZ> supervoxels(0.5F, 8.0F);
-    supervoxels.setUseSingleCameraTransform(false);
-    supervoxels.setInputCloud(images[i++ % images.size()]);
-    supervoxels.setColorImportance(0.0F);
-    supervoxels.setSpatialImportance(1.0F);
-    supervoxels.setNormalImportance(0.0F);
-    std::map<std::uint32_t, pcl::Supervoxel<pcl::PointXYZ>::Ptr> clusters;
-    supervoxels.extract(clusters);
-    found += supervoxels.getLabeledCloud()->size();
-  }
-  state.counters["pixels"] = benchmark::Counter(static_cast<double>(found), benchmark::Counter::kAvgIterations);
+  measure(state,
+          [&](std::size_t i)
+          {
+            pcl::SupervoxelClustering<pcl::PointXYZ> supervoxels(0.5F, 8.0F);
+            supervoxels.setUseSingleCameraTransform(false);
+            supervoxels.setInputCloud(images[i % images.size()]);
+            supervoxels.setColorImportance(0.0F);
+            supervoxels.setSpatialImportance(1.0F);
+            supervoxels.setNormalImportance(0.0F);
+            std::map<std::uint32_t, pcl::Supervoxel<pcl::PointXYZ>::Ptr> clusters;
+            supervoxels.extract(clusters);
+            benchmark::DoNotOptimize(supervoxels.getLabeledCloud()->size());
+          });
+  setThings(state, scans);
 }
 
-std::unique_ptr<const Scans> addAll()
+void addAll()
 {
-  const Scans recorded = recordedScans();
-  auto kept =
-      std::make_unique<const Scans>(recorded.empty() ? simulatedScans(SensorModel::load("hdl64e"), 10) : recorded);
-  const Scans& scans = *kept;
-  add("euclidean/pcl_straight", [&scans](benchmark::State& state) { euclideanStraight(state, scans); });
-  add("euclidean/ours", [&scans](benchmark::State& state) { cluster(state, scans, "euclidean"); });
-  add("supervoxel/pcl_straight", [&scans](benchmark::State& state) { supervoxelStraight(state, scans); });
-  add("supervoxel/ours", [&scans](benchmark::State& state) { cluster(state, scans, "supervoxel"); });
-  return kept;
+  for (const std::string name : {"recorded", "street"})
+  {
+    const auto addRow = [&name](const std::string& row, void (*body)(benchmark::State&, const Scans&))
+    { addOn(name + "/" + row, name, body); };
+    addRow("euclidean/pcl_straight", euclideanStraight);
+    addRow("euclidean/ours", [](benchmark::State& state, const Scans& scans) { cluster(state, scans, "euclidean"); });
+    addRow("supervoxel/pcl_straight", supervoxelStraight);
+    addRow("supervoxel/ours", [](benchmark::State& state, const Scans& scans) { cluster(state, scans, "supervoxel"); });
+  }
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -1,9 +1,8 @@
-// Time of each stage and algorithm, one thread, beside a plain copy of the frame. Figures are worth comparing within
-// one run only.
-//   simulated/, recorded/   whole scans: 64 x 2048, 5 % of the pixels things
-//   ten_thousand/           clustering alone, recorded scans with exactly 10,000 things
-//   all_things/, 128_rings/ cost against size: every return a thing, on 64 and on 128 rings
-#include "benchmark_scans.h"
+// Time of each stage and algorithm, one thread, in copies of the labelled 64 x 2048 cloud.
+//   recorded/, street/, street_128/: whole scans with their true classes
+//   ten_thousand/: clustering, recorded scans with exactly 10,000 things
+//   all_things/, street_all_things/, street_128_all_things/: every return a thing, on 64 and on 128 rings
+#include "measure.h"
 
 #include <malloc.h>
 
@@ -14,64 +13,41 @@ namespace
 void select(benchmark::State& state, const Scans& scans)
 {
   ThingScan things;
-  std::size_t i = 0, found = 0;
-  for (auto _ : state)
-  {
-    selectThings(scans[i++ % scans.size()], *table(), SelectionConfig(), things);
-    found += things.size();
-  }
-  setThings(state, found);
+  measure(state,
+          [&](std::size_t i) { selectThings(scans[i % scans.size()], *kittiTable(), SelectionConfig(), things); });
+  setThings(state, scans);
 }
 
-void addWholeScans(const std::string& source, const Scans& scans)
+/// Into new memory each time.
+void freshCopy(benchmark::State& state, const Scans& scans)
 {
-  if (scans.empty()) return;
-  add(source + "/plain_copy", [&scans](benchmark::State& state) { plainCopy(state, scans, false); });
-  add(source + "/plain_copy_fresh", [&scans](benchmark::State& state) { plainCopy(state, scans, true); });
-  add(source + "/select", [&scans](benchmark::State& state) { select(state, scans); });
-  for (const auto& name : algorithmNames())
-  {
-    add(source + "/cluster/" + name, [&scans, name](benchmark::State& state) { cluster(state, scans, name); });
-    add(source + "/pipeline/" + name, [&scans, name](benchmark::State& state) { pipeline(state, scans, name); });
-    add(source + "/pipeline_fresh/" + name,
-        [&scans, name](benchmark::State& state) { pipeline(state, scans, name, true); });
-  }
+  auto out = std::make_unique<LabelledCloud>();
+  measure(state,
+          [&](std::size_t i)
+          {
+            out = std::make_unique<LabelledCloud>();
+            *out = scans[i % scans.size()];
+            benchmark::DoNotOptimize(out->points.data());
+          });
 }
 
-void addSizes(const std::string& source, const Scans& scans)
+void addAll()
 {
-  for (const std::string name : {"depth", "scan_line_run", "birds_eye"})
+  const std::vector<std::string> fast = {"depth", "scan_line_run", "birds_eye"};
+  for (const std::string scene_name : {"recorded", "street"})
   {
-    add(source + "/cluster/" + name, [&scans, name](benchmark::State& state) { cluster(state, scans, name); });
-    add(source + "/pipeline/" + name, [&scans, name](benchmark::State& state) { pipeline(state, scans, name); });
+    addOn(scene_name + "/plain_copy_fresh", scene_name, freshCopy);
+    addOn(scene_name + "/select", scene_name, select);
+    addAlgorithms(scene_name, algorithmNames());
+    for (const std::string& name : algorithmNames())
+      addOn(scene_name + "/pipeline_fresh/" + name, scene_name,
+            [name](benchmark::State& state, const Scans& scans) { pipeline(state, scans, name, true); });
   }
-}
-
-struct Kept
-{
-  Scans simulated, recorded, ten_thousand, all_things, dense, dense_things;
-};
-
-std::unique_ptr<Kept> addAll()
-{
-  auto kept = std::make_unique<Kept>();
-  kept->simulated = simulatedScans(SensorModel::load("hdl64e"), 10), kept->recorded = recordedScans();
-  addWholeScans("simulated", kept->simulated);
-  addWholeScans("recorded", kept->recorded);
-
-  const Scans& usual = kept->recorded.empty() ? kept->simulated : kept->recorded;
-  const Scans& ten_thousand = kept->ten_thousand = withThings(usual, 10000);
-  if (!ten_thousand.empty())
-    for (const auto& name : algorithmNames())
-      add("ten_thousand/cluster/" + name,
-          [&ten_thousand, name](benchmark::State& state) { cluster(state, ten_thousand, name); });
-
-  kept->all_things = allThings(usual);
-  kept->dense = simulatedScans(hdl128e(), 4), kept->dense_things = allThings(kept->dense);
-  addSizes("all_things", kept->all_things);
-  addSizes("128_rings", kept->dense);
-  addSizes("128_rings_all_things", kept->dense_things);
-  return kept;
+  for (const std::string& name : algorithmNames())
+    addOn("ten_thousand/cluster/" + name, "ten_thousand",
+          [name](benchmark::State& state, const Scans& scans) { cluster(state, scans, name); });
+  for (const std::string scene_name : {"all_things", "street_128", "street_all_things", "street_128_all_things"})
+    addAlgorithms(scene_name, fast);
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

@@ -22,7 +22,8 @@ def pipeline_parameters():
     generator.add("class_policy", str_t, 0, "Which points may share an instance", "class", edit_method=policies)
     generator.add("link_distance_scale", double_t, 0, "Factor on the class table's link distances", 1.0, 0.05, 100.0)
     generator.add("bridge_distance_m", double_t, 0,
-                  "Objects of one group of classes that are closer are one; 0: never [m]", 0.3, 0.0, 10.0)
+                  "Objects of one group of classes that are closer are one; 0: never, else from 0.001 [m]",
+                  0.3, 0.0, 10.0)
     generator.add("split", bool_t, 0, "Objects too big for their class are cut where they hang together least", True)
     generator.add("size_margin", double_t, 0, "Factor on the class's usual size above which an object is too big",
                   1.3, 1.0, 10.0)

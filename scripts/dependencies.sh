@@ -6,18 +6,20 @@ source "$(dirname "${BASH_SOURCE[0]}")/environment.sh"
 required_packages() {
   printf '%s\n' g++ cmake make pkg-config \
     libbenchmark-dev libboost-program-options-dev libcairo2-dev libeigen3-dev libgtest-dev libpcl-dev libyaml-cpp-dev \
-    nlohmann-json3-dev fonts-dejavu-core python3-numpy
+    nlohmann-json3-dev fonts-dejavu-core pybind11-dev python3-dev python3-distributed python3-matplotlib python3-mypy \
+    python3-numpy python3-pytest
   [ "${1:-}" != without_ros ] || return 0
   local name
   if [ ! -e "$ros_setup" ]; then
     printf '%s\n' catkin libnodeletlib-dev libpcl-ros-dev libdynamic-reconfigure-config-init-mutex-dev \
-      python3-dynamic-reconfigure libdiagnostic-updater-dev libvisualization-msgs-dev libtf2-ros-dev \
-      librosbag-storage-dev librostest-dev python3-rostest python3-roslaunch libnodeletlib-tools tf2-tools rosbash \
-      python3-rostopic python3-rosnode python3-rosservice python3-rosmsg python3-rosbag topic-tools python3-sensor-msgs \
+      python3-dynamic-reconfigure libdiagnostic-updater-dev ros-geometry-msgs libvisualization-msgs-dev \
+      libtf2-ros-dev ros-message-generation ros-message-runtime librosbag-storage-dev librostest-dev \
+      python3-rostest python3-roslaunch libnodeletlib-tools tf2-tools rosbash python3-rostopic python3-rosnode \
+      python3-rosservice python3-rosmsg python3-rosbag topic-tools python3-geometry-msgs python3-sensor-msgs \
       python3-visualization-msgs python3-diagnostic-msgs python3-nodelet python3-tf2-ros rviz
   elif dpkg-query -W ros-noetic-roscpp > /dev/null 2>&1; then  # not where it was built from source
-    for name in catkin diagnostic-updater dynamic-reconfigure nodelet pcl-ros pluginlib rosbag-storage roslaunch rostest \
-      rviz tf2-ros visualization-msgs; do
+    for name in catkin diagnostic-updater dynamic-reconfigure message-generation message-runtime nodelet pcl-ros pluginlib \
+      rosbag-storage roslaunch rostest rviz tf2-ros visualization-msgs; do
       echo "ros-noetic-$name"
     done
   fi

@@ -38,6 +38,22 @@ class AlgorithmFiles(unittest.TestCase):
                               (ROOT / 'nodelet_plugins.xml').read_text())
         self.assertEqual(sorted(plug_ins), sorted(camel_case(name) for name in self.algorithms))
 
+    def test_ranges_with_a_gap_are_told(self):
+        """dynamic_reconfigure knows one range: what takes 0, or from a least distance on, has to say so in words."""
+        header = (ROOT / 'include' / PACKAGE / 'core' / 'parameters.h').read_text()
+        least = re.search(r'kLeastDistanceM = ([\d.]+);', header).group(1)
+        sources = ''.join(path.read_text() for path in (ROOT / 'src').rglob('*.cpp'))
+        names = set(re.findall(r'requireOffOrDistance\("(\w+)"', sources))
+        self.assertGreater(len(names), 2)
+        page = (ROOT / 'doc' / 'topics_and_parameters.md').read_text()
+        for path in list((ROOT / 'cfg').glob('*.cfg')) + [ROOT / 'cfg' / 'pipeline_parameters.py']:
+            for call in re.findall(r'generator\.add\((.*?)\)\n', path.read_text(), re.S):
+                name = re.match(r'"(\w+)"', call).group(1)
+                said = f'else from {least}' in re.sub(r'"\s+"', '', call)
+                self.assertEqual(said, name in names, f'{path.name}: {name}')
+        for name in names:
+            self.assertRegex(page, rf'`{name}` \| [\d.]+ \| 0, or {least} to ', name)
+
     def test_the_demo_takes_each(self):
         answer = subprocess.run([ROOT / 'demo', '--algorithm', 'sonar'], capture_output=True, text=True, check=False)
         self.assertEqual(answer.returncode, 2)

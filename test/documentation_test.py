@@ -9,7 +9,7 @@ import unittest
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 README_LINES = 150
-OF_DRIVERS = {'organize_cloud', 'destagger'}  # arguments of their launch files, not of ours
+OF_DRIVERS = {'pcap', 'organize_cloud', 'destagger'}  # arguments of their launch files, not of ours
 LINK = re.compile(r'!?\[(?:[^\]\[]|\[[^\]]*\])*\]\(([^()\s]*(?:\([^()\s]*\))?[^()\s]*)(?:\s+"[^"]*")?\)')
 HEADING = re.compile(r'^(#{1,6})\s+(.*?)\s*#*\s*$', re.MULTILINE)
 

@@ -1,8 +1,8 @@
 #include "lidar_panoptic_clustering/clusterers/euclidean_clusterer.h"
 
+#include "clusterers/grid_search.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 
-#include <pcl/search/kdtree.h>
 #include <pcl/segmentation/extract_clusters.h>
 
 #include <algorithm>
@@ -57,12 +57,13 @@ void EuclideanClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_
   {
     if (groups_.size(group) == 0) continue;
     const Cloud::Ptr cloud = representatives(scan, group);
-    pcl::search::KdTree<pcl::PointXYZ>::Ptr tree(new pcl::search::KdTree<pcl::PointXYZ>(false));
-    tree->setInputCloud(cloud);
+    constexpr double kRounding = 1.0001;  // PCL's tolerance is a float: never more than a cell
+    const double distance = tolerance(scan, group);
+    const pcl::search::Search<pcl::PointXYZ>::Ptr grid(new GridSearch(kRounding * distance, GridSearch::kOnce));
     pcl::EuclideanClusterExtraction<pcl::PointXYZ> extraction;
     extraction.setInputCloud(cloud);
-    extraction.setSearchMethod(tree);
-    extraction.setClusterTolerance(tolerance(scan, group));
+    extraction.setSearchMethod(grid);
+    extraction.setClusterTolerance(distance);
     extraction.setMinClusterSize(1);
     extraction.setMaxClusterSize(std::numeric_limits<int>::max());
     std::vector<pcl::PointIndices> clusters;

@@ -1,31 +1,15 @@
 #include "lidar_panoptic_clustering/clusterers/scan_line_run_clusterer.h"
 
+#include "clusterers/scan_line_distance.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <limits>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
-template <class A, class B>
-float squaredDistance(const A& a, const B& b)
-{
-  const float dx = a.x - b.x, dy = a.y - b.y, dz = a.z - b.z;
-  return dx * dx + dy * dy + dz * dz;
-}
-
-/// Whether two points are closer than `limit` and than both classes' link distance.
-template <class Point>
-bool areClose(const Point& a, const Point& b, float limit)
-{
-  const float distance = std::min({limit, a.link_distance, b.link_distance});
-  return squaredDistance(a, b) < distance * distance;
-}
-
 /// Squared distance of two intervals' nearest ends, 0 where they overlap.
 float squaredGap(float a_min, float a_max, float b_min, float b_max)
 {
@@ -50,31 +34,6 @@ int windowOf(const ThingPoint& p, float distance, float column_angle, int max_wi
 }
 
 constexpr std::size_t kBudget = 8;  // comparisons a point of two lines before they are compared point by point
-constexpr std::uint32_t kBlock = 8;
-
-/// Whether any of kBlock points is nearer to p than `distance` and of another object than `object`.
-template <class Point>
-bool isAnyNear(const Point& p, float distance, std::uint32_t object, const float* x, const float* y, const float* z,
-               const std::uint32_t* objects)
-{
-  using Floats = float __attribute__((vector_size(16)));
-  using Ints = std::int32_t __attribute__((vector_size(16)));
-  Ints near = {};
-  for (std::uint32_t k = 0; k < kBlock; k += 4)
-  {
-    Floats dx, dy, dz;
-    Ints others;
-    std::memcpy(&dx, x + k, sizeof(dx));
-    std::memcpy(&dy, y + k, sizeof(dy));
-    std::memcpy(&dz, z + k, sizeof(dz));
-    std::memcpy(&others, objects + k, sizeof(others));
-    dx -= p.x, dy -= p.y, dz -= p.z;
-    near |= (dx * dx + dy * dy + dz * dz < distance * distance) & (others != static_cast<std::int32_t>(object));
-  }
-  std::uint64_t halves[2];
-  std::memcpy(halves, &near, sizeof(halves));
-  return (halves[0] | halves[1]) != 0;
-}
 }  // namespace
 
 ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : config_(config)
@@ -87,6 +46,7 @@ ScanLineRunClusterer::ScanLineRunClusterer(const ScanLineRunConfig& config) : co
 void ScanLineRunClusterer::cluster(const ThingScan& scan, std::vector<std::uint32_t>& component)
 {
   looked_at_ = 0;
+  lower_.slot = 0xFFFFFFFF;
   sortByLink(scan);
   findRuns(scan);
   const auto gap = static_cast<std::uint32_t>(config_.max_line_gap);
@@ -231,59 +191,5 @@ bool ScanLineRunClusterer::anyPairClose(const Run& upper, const Run& lower, int 
       if (close(points_[j - 1])) return true;
   }
   return false;
-}
-
-/// Each upper point with all lower ones in its window.
-void ScanLineRunClusterer::linkPoints(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn)
-{
-  const std::uint32_t begin = slot_begin_[lower_slot], size = slot_begin_[lower_slot + 1] - begin;
-  for (auto* coordinate : {&lower_.x, &lower_.y, &lower_.z})
-    coordinate->assign(size + kBlock, std::numeric_limits<float>::infinity());  // a block may end behind the line
-  lower_.object.resize(size + kBlock);
-  for (std::uint32_t k = 0; k < size; ++k)
-  {
-    const Point& q = points_[begin + k];
-    lower_.x[k] = q.x, lower_.y[k] = q.y, lower_.z[k] = q.z;
-    lower_.object[k] = sets_.find(run_of_thing_[q.thing]);
-  }
-  for (std::uint32_t i = slot_begin_[upper_slot]; i < slot_begin_[upper_slot + 1]; ++i)
-  {
-    const Point& p = points_[i];
-    linkPoint(p, lower_slot, 0);
-    if (turn > 0 && p.column < p.window) linkPoint(p, lower_slot, -turn);
-    if (turn > 0 && p.column + p.window >= turn) linkPoint(p, lower_slot, turn);
-  }
-}
-
-void ScanLineRunClusterer::linkPoint(const Point& p, std::uint32_t lower_slot, int shift)
-{
-  const auto begin = points_.begin() + slot_begin_[lower_slot], end = points_.begin() + slot_begin_[lower_slot + 1];
-  const auto isLeftOf = [](const Point& q, int column) { return q.column < column; };
-  const auto from = std::lower_bound(begin, end, p.column - p.window - shift, isLeftOf);
-  const auto to = std::lower_bound(from, end, p.column + p.window + 1 - shift, isLeftOf);
-  std::uint32_t object = sets_.find(run_of_thing_[p.thing]);
-  const auto last = static_cast<std::uint32_t>(to - begin);
-  const float distance = std::min(line_distance_, p.link_distance);
-  for (auto k = static_cast<std::uint32_t>(from - begin); k < last; k += kBlock)
-  {
-    looked_at_ += kBlock;
-    if (isAnyNear(p, distance, object, &lower_.x[k], &lower_.y[k], &lower_.z[k], &lower_.object[k]))
-      linkBlock(p, &*begin, k, std::min(k + kBlock, last), shift, object);
-  }
-}
-
-/// Joins p with the close ones among points [begin, end) of the lower line; `object` is that of p.
-void ScanLineRunClusterer::linkBlock(const Point& p, const Point* line, std::uint32_t begin, std::uint32_t end,
-                                     int shift, std::uint32_t& object)
-{
-  for (std::uint32_t k = begin; k < end; ++k)
-  {
-    const Point& q = line[k];
-    if (lower_.object[k] == object || std::abs(q.column + shift - p.column) > q.window ||
-        !areClose(p, q, line_distance_))
-      continue;
-    sets_.unite(object, run_of_thing_[q.thing]);
-    object = lower_.object[k] = sets_.find(object);
-  }
 }
 }  // namespace lidar_panoptic_clustering

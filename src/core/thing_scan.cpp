@@ -119,15 +119,78 @@ void findFieldOfView(const LabelledCloud& cloud, const SelectionConfig& config, 
 }
 }  // namespace
 
-void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan)
+namespace
+{
+/// What the class table says of a raw id, looked up anew only where it is another one than the point's before.
+class LabelLookUp
+{
+public:
+  explicit LabelLookUp(const ClassTable& table) : table_(table) {}
+  /// Whether it is another id than before.
+  bool look(std::uint32_t label)
+  {
+    if (label == label_ && is_known_) return false;
+    label_ = label, is_known_ = true;
+    kind = table_.kindOf(label);
+    class_index = table_.find(label);
+    rgb = table_.rgbOf(label);
+    return true;
+  }
+
+  ClassKind kind = ClassKind::kIgnored;
+  ClassIndex class_index = kUnknownClass;
+  std::uint32_t rgb = 0;
+
+private:
+  const ClassTable& table_;
+  std::uint32_t label_ = 0;
+  bool is_known_ = false;
+};
+
+/// A point in its class's colour: two stores of 16 bytes.
+void copyPoint(const LabelledPoint& from, std::uint32_t rgb, PanopticPoint& to)
+{
+  to.getVector4fMap() = from.getVector4fMap();
+  to.intensity = from.intensity;
+  to.label = from.label;
+  to.instance = 0;
+  to.rgb = rgb;
+}
+
+void copyFrame(const LabelledCloud& cloud, PanopticCloud& out)
+{
+  out.header = cloud.header;
+  out.width = cloud.width, out.height = cloud.height;
+  out.is_dense = cloud.is_dense;
+  out.sensor_origin_ = cloud.sensor_origin_, out.sensor_orientation_ = cloud.sensor_orientation_;
+  out.points.resize(cloud.points.size());
+}
+
+/// The things of some pixels, which the scan takes over together.
+struct Batch
+{
+  static constexpr std::uint32_t kPixels = 256;
+
+  ThingPoint points[kPixels];
+  std::uint8_t link[kPixels];
+  ClassIndex class_index[kPixels];
+  std::uint32_t count = 0;
+
+  void moveInto(ThingScan& scan)
+  {
+    scan.points.insert(scan.points.end(), points, points + count);
+    scan.link.insert(scan.link.end(), link, link + count);
+    scan.class_index.insert(scan.class_index.end(), class_index, class_index + count);
+    count = 0;
+  }
+};
+
+void beginScan(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan)
 {
   const std::size_t pixels = static_cast<std::size_t>(cloud.width) * cloud.height;
   if (cloud.points.size() != pixels)
     throw std::invalid_argument("cloud is " + std::to_string(cloud.width) + " x " + std::to_string(cloud.height) +
                                 " (width x height) but holds " + std::to_string(cloud.points.size()) + " points");
-
-  const auto max_squared_range = static_cast<float>(config.max_range_m * config.max_range_m);
-  const auto keys = linkKeys(table, classPolicyFromName(config.class_policy), scan.link_count);
   scan.class_link_distance.resize(table.size());
   for (std::size_t c = 0; c < table.size(); ++c)
     scan.class_link_distance[c] =
@@ -137,27 +200,66 @@ void selectThings(const LabelledCloud& cloud, const ClassTable& table, const Sel
   scan.points.clear(), scan.link.clear(), scan.class_index.clear(), scan.unknown_labels.clear();
   scan.line_begin.resize(scan.rows + 1);
   findFieldOfView(cloud, config, scan);
+}
 
-  const LabelledPoint* point = cloud.points.data();
+/// One pass over the cloud; `copy(k, rgb)` is called for its k-th point.
+template <class Copy>
+void select(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan,
+            const Copy& copy)
+{
+  const auto max_squared_range = static_cast<float>(config.max_range_m * config.max_range_m);
+  const auto keys = linkKeys(table, classPolicyFromName(config.class_policy), scan.link_count);
+  LabelLookUp of(table);
+  Batch batch;
+  std::size_t k = 0;
   for (std::uint32_t row = 0; row < scan.rows; ++row)
   {
     scan.line_begin[row] = static_cast<std::uint32_t>(scan.points.size());
-    for (std::uint32_t column = 0; column < scan.columns; ++column, ++point)
+    for (std::uint32_t begin = 0; begin < scan.columns; begin += Batch::kPixels)
     {
-      const ClassKind kind = table.kindOf(point->label);
-      if (kind != ClassKind::kThing)
+      const std::uint32_t end = std::min(begin + Batch::kPixels, scan.columns);
+      for (std::uint32_t column = begin; column < end; ++column, ++k)
       {
-        if (kind == ClassKind::kIgnored && table.find(point->label) == kUnknownClass)
-          noteUnknown(scan.unknown_labels, point->label);
-        continue;
+        const LabelledPoint& p = cloud.points[k];
+        if (of.look(p.label) && of.kind == ClassKind::kIgnored && of.class_index == kUnknownClass)
+          noteUnknown(scan.unknown_labels, p.label);
+        copy(k, of.rgb);
+        if (of.kind != ClassKind::kThing || !isReturn(p, max_squared_range)) continue;
+        batch.points[batch.count] = {p.x, p.y, p.z, column};
+        batch.link[batch.count] = keys[of.class_index];
+        batch.class_index[batch.count++] = of.class_index;
       }
-      if (!isReturn(*point, max_squared_range)) continue;
-      const ClassIndex class_index = table.find(point->label);
-      scan.points.push_back({point->x, point->y, point->z, column});
-      scan.link.push_back(keys[class_index]);
-      scan.class_index.push_back(class_index);
+      if (batch.count > 0) batch.moveInto(scan);
     }
   }
   scan.line_begin[scan.rows] = static_cast<std::uint32_t>(scan.points.size());
+}
+}  // namespace
+
+void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan)
+{
+  beginScan(cloud, table, config, scan);
+  select(cloud, table, config, scan, [](std::size_t, std::uint32_t) {});
+}
+
+void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan,
+                  PanopticCloud& out)
+{
+  beginScan(cloud, table, config, scan);
+  copyFrame(cloud, out);
+  PanopticPoint* const to = out.points.data();
+  select(cloud, table, config, scan,
+         [&cloud, to](std::size_t k, std::uint32_t rgb) { copyPoint(cloud.points[k], rgb, to[k]); });
+}
+
+void copyInClassColors(const LabelledCloud& cloud, const ClassTable& table, PanopticCloud& out)
+{
+  copyFrame(cloud, out);
+  LabelLookUp of(table);
+  for (std::size_t k = 0; k < cloud.points.size(); ++k)
+  {
+    of.look(cloud.points[k].label);
+    copyPoint(cloud.points[k], of.rgb, out.points[k]);
+  }
 }
 }  // namespace lidar_panoptic_clustering

@@ -1,6 +1,6 @@
 #include "drawing/birds_eye_view.h"
 
-#include "drawing/axis.h"
+#include "drawing/round_numbers.h"
 
 #include <algorithm>
 #include <array>
@@ -78,7 +78,7 @@ std::optional<PixelPoint> labelPlace(const BirdsEyeView& view, double radius, do
 double circleStep(const ViewWindow& window)
 {
   const double reach = std::max({-window.min_x, window.max_x, -window.min_y, window.max_y});
-  return linearTicks(0.0, reach, 6)[1];
+  return roundStep(reach, 5);
 }
 
 void drawRangeCircles(Canvas& canvas, const BirdsEyeView& view, double scale)
@@ -97,7 +97,7 @@ void drawRangeLabels(Canvas& canvas, const BirdsEyeView& view, double scale)
   const TextStyle style{13.0 * scale, {kText}, TextAlign::kCentre};
   for (double radius = step; radius < 2.0 * kReachM; radius += step)
     if (const auto place = labelPlace(view, radius, 24.0 * scale))
-      canvas.textOnPlate(*place, tickLabel(radius, step) + " m", style, {kBackground, 0.75});
+      canvas.textOnPlate(*place, stepLabel(radius, step) + " m", style, {kBackground, 0.75});
 }
 
 void drawSensor(Canvas& canvas, const BirdsEyeView& view, double scale)
@@ -113,14 +113,25 @@ void drawSensor(Canvas& canvas, const BirdsEyeView& view, double scale)
 
 void drawScaleBar(Canvas& canvas, const BirdsEyeView& view, double scale)
 {
-  const double metres = linearTicks(0.0, 0.2 * view.window.width(), 3)[1];
+  const double metres = roundStep(0.2 * view.window.width(), 2);
   const double length = metres * view.pixelsPerMetre(), margin = 18.0 * scale;
   const Box plate{view.box.x + margin, view.box.bottom() - margin - 34.0 * scale, length + 20.0 * scale, 34.0 * scale};
   const double left = plate.x + 10.0 * scale, y = plate.bottom() - 9.0 * scale, tick = 5.0 * scale;
   canvas.fill(plate, {kBackground, 0.75});
   canvas.line({{left, y - tick}, {left, y}, {left + length, y}, {left + length, y - tick}}, {kWhite, 0.9}, 1.6 * scale);
-  canvas.text({left + 0.5 * length, y - 14.0 * scale}, tickLabel(metres, metres) + " m",
+  canvas.text({left + 0.5 * length, y - 14.0 * scale}, stepLabel(metres, metres) + " m",
               {13.0 * scale, {kWhite, 0.9}, TextAlign::kCentre});
+}
+
+void drawTrails(Canvas& canvas, const BirdsEyeView& view, const std::vector<Trail>& trails, double scale)
+{
+  for (const Trail& trail : trails)
+    for (std::size_t i = 1; i < trail.places.size(); ++i)
+    {
+      const Trail::Place &from = trail.places[i - 1], &to = trail.places[i];
+      const double alpha = static_cast<double>(i + 1) / static_cast<double>(trail.places.size());
+      canvas.line({view.toPixel(from.x, from.y), view.toPixel(to.x, to.y)}, {trail.rgb, alpha}, 3.0 * scale);
+    }
 }
 
 void drawBoxes(Canvas& canvas, const BirdsEyeView& view, const std::vector<NamedBox>& boxes, double scale)
@@ -190,6 +201,7 @@ void drawBirdsEyeView(Canvas& canvas, const BirdsEyeView& view, const ScanPanel&
   drawPoints(canvas, view, *panel.cloud, scale);
   drawRangeLabels(canvas, view, scale);
   drawSensor(canvas, view, scale);
+  drawTrails(canvas, view, panel.trails, scale);
   drawBoxes(canvas, view, panel.boxes, scale);
   drawScaleBar(canvas, view, scale);
   drawMarks(canvas, view, panel.marks, scale);

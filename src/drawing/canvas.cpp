@@ -118,16 +118,13 @@ void Canvas::fill(const std::vector<PixelPoint>& polygon, Paint paint)
   cairo_fill(context_.get());
 }
 
-void Canvas::line(const std::vector<PixelPoint>& points, Paint paint, double width, bool dashed)
+void Canvas::line(const std::vector<PixelPoint>& points, Paint paint, double width)
 {
   setPaint(paint);
-  const double dash[] = {4.0 * width, 3.0 * width};
-  cairo_set_dash(context_.get(), dash, dashed ? 2 : 0, 0.0);
   cairo_set_line_width(context_.get(), width);
   cairo_set_line_join(context_.get(), CAIRO_LINE_JOIN_ROUND);
   for (const PixelPoint& point : points) cairo_line_to(context_.get(), point.x, point.y);
   cairo_stroke(context_.get());
-  cairo_set_dash(context_.get(), nullptr, 0, 0.0);
 }
 
 void Canvas::circle(PixelPoint centre, double radius, Paint paint, double width)
@@ -138,25 +135,14 @@ void Canvas::circle(PixelPoint centre, double radius, Paint paint, double width)
   cairo_stroke(context_.get());
 }
 
-void Canvas::disc(PixelPoint centre, double radius, Paint paint)
-{
-  setPaint(paint);
-  cairo_arc(context_.get(), centre.x, centre.y, radius, 0.0, kFullCircle);
-  cairo_fill(context_.get());
-}
-
 void Canvas::text(PixelPoint anchor, const std::string& text, const TextStyle& style)
 {
   if (text.empty()) return;
   const double width = textWidth(text, style);
   const double shift = style.align == TextAlign::kLeft ? 0.0 : style.align == TextAlign::kCentre ? 0.5 : 1.0;
   setPaint(style.paint);
-  cairo_save(context_.get());
-  cairo_translate(context_.get(), anchor.x, anchor.y);
-  cairo_rotate(context_.get(), style.angle);
-  cairo_move_to(context_.get(), -shift * width, 0.5 * capHeight());
+  cairo_move_to(context_.get(), anchor.x - shift * width, anchor.y + 0.5 * capHeight());
   cairo_show_text(context_.get(), text.c_str());
-  cairo_restore(context_.get());
   cairo_new_path(context_.get());
 }
 

@@ -52,7 +52,6 @@ struct TextStyle
   Paint paint;
   TextAlign align = TextAlign::kLeft;
   bool bold = false;
-  double angle = 0.0;  ///< [rad], clockwise about the anchor
 };
 
 /// An opaque picture to draw on. The one place that knows cairo.
@@ -77,9 +76,8 @@ public:
   void dots(const std::vector<Dot>& dots, const Box& box);
   void fill(const Box& box, Paint paint);
   void fill(const std::vector<PixelPoint>& polygon, Paint paint);
-  void line(const std::vector<PixelPoint>& points, Paint paint, double width, bool dashed = false);
+  void line(const std::vector<PixelPoint>& points, Paint paint, double width);
   void circle(PixelPoint centre, double radius, Paint paint, double width);
-  void disc(PixelPoint centre, double radius, Paint paint);
   void text(PixelPoint anchor, const std::string& text, const TextStyle& style);
   /// As text, on a translucent plate that keeps it readable above points.
   void textOnPlate(PixelPoint anchor, const std::string& text, const TextStyle& style, Paint plate);

@@ -1,7 +1,7 @@
 #include "lidar_panoptic_clustering/drawing/scan_figure.h"
 
-#include "drawing/axis.h"
 #include "drawing/range_picture.h"
+#include "drawing/round_numbers.h"
 #include "drawing/scan_figure_layout.h"
 
 #include <algorithm>
@@ -15,7 +15,7 @@ constexpr std::uint32_t kPaper = 0x161B22, kTitle = 0xF2F5F8, kCaption = 0x9DA9B
 
 std::string count(std::size_t number, const std::string& noun)
 {
-  return numberLabel(static_cast<double>(number), 0) + " " + noun + (number == 1 ? "" : "s");
+  return roundNumber(static_cast<double>(number), 0) + " " + noun + (number == 1 ? "" : "s");
 }
 
 /// "103,218 returns, 9,871 on things, 31 instances"
@@ -32,7 +32,7 @@ std::string describe(const ScanPanel& panel, bool counted)
     ++things;
     instances.insert(point.instance);
   }
-  const std::string counts = count(returns, "return") + ", " + numberLabel(static_cast<double>(things), 0) +
+  const std::string counts = count(returns, "return") + ", " + roundNumber(static_cast<double>(things), 0) +
                              " on things, " + count(instances.size(), "instance");
   return panel.caption.empty() ? counts : counts + ", " + panel.caption;
 }

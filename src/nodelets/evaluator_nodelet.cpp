@@ -2,6 +2,7 @@
 #include "lidar_panoptic_clustering/core/parameters.h"
 #include "lidar_panoptic_clustering/evaluation/object_errors.h"
 #include "lidar_panoptic_clustering/evaluation/panoptic_quality.h"
+#include "lidar_panoptic_clustering/evaluation/temporal_quality.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
 #include "ros/parameter_server.h"
@@ -42,9 +43,12 @@ struct EvaluatorConfig
 ///
 /// With each pair it publishes the panoptic quality over all pairs since the start or the last call of ~reset
 /// (std_srvs/Empty), as std_msgs/Float64 from 0 to 1 for rqt_plot: ~pq, ~rq, ~sq, ~pq_things (mean over all thing
-/// classes) and ~pq_things_present (over those that occur); and on /diagnostics these, the objects split, merged and
-/// missed, and the clouds that found no partner. It looks at the pixels only: returns hidden in the range image do not
-/// count. Rules: see PanopticQuality; ids of one class (10 and 252) are one class of prediction, as in a label file.
+/// classes) and ~pq_things_present (over those that occur); likewise whether ids stay with an object, ~lstq, ~s_assoc
+/// and ~s_cls, which are of use where ~input is a tracker's output; and on /diagnostics these, the objects split,
+/// merged and missed, id switches, and the clouds that found no partner. All pairs are one sequence there: what is
+/// played again is the same objects with other ids, so ~reset at each beginning. Memory grows with the ids. It looks at
+/// the pixels only: returns hidden in the range image do not count. Rules: see PanopticQuality; ids of one class (10
+/// and 252) are one class of prediction, as in a label file.
 ///
 /// Parameters: ~class_table, and those of EvaluatorConfig.
 class EvaluatorNodelet : public nodelet::Nodelet
@@ -61,11 +65,19 @@ public:
 private:
   using CloudPtr = boost::shared_ptr<const PanopticCloud>;
 
+  template <class Figures>
   struct Figure
   {
     const char* name;
-    double PanopticFigures::*value;
+    double Figures::*value;
     ros::Publisher publisher;
+
+    void publish(const Figures& figures) const
+    {
+      std_msgs::Float64 message;
+      message.data = figures.*value;
+      publisher.publish(message);
+    }
   };
 
   void onInit() override
@@ -86,7 +98,8 @@ private:
     }
     matcher_ = std::make_unique<StampMatcher<CloudPtr>>(static_cast<std::size_t>(config_.queue_size));
     startAgain();
-    for (Figure& figure : figures_) figure.publisher = advertiseAlone<std_msgs::Float64>(nh, figure.name, 10);
+    for (auto& figure : figures_) figure.publisher = advertiseAlone<std_msgs::Float64>(nh, figure.name, 10);
+    for (auto& figure : over_time_) figure.publisher = advertiseAlone<std_msgs::Float64>(nh, figure.name, 10);
 
     {
       const std::lock_guard<std::mutex> lock(linkMutex());
@@ -136,13 +149,13 @@ private:
     quality_->addScan(predicted_.view(), truth_.view(), truth.size());
     for (const TrueObject& object : errors_.judge(quality_->lastScan())) objects_.add(object.outcome);
 
+    temporal_->addScan("", quality_->lastScan());
+    switches_->addScan(quality_->lastScan());
+
     const PanopticFigures values = quality_->figures();
-    for (const Figure& figure : figures_)
-    {
-      std_msgs::Float64 message;
-      message.data = values.*figure.value;
-      figure.publisher.publish(message);
-    }
+    for (const auto& figure : figures_) figure.publish(values);
+    const TemporalFigures over_time = temporal_->figures();
+    for (const auto& figure : over_time_) figure.publish(over_time);
   }
 
   void refuse(const std::string& error)
@@ -172,6 +185,8 @@ private:
   void startAgain()
   {
     quality_ = std::make_unique<PanopticQuality>(table_, config_.min_points);
+    temporal_ = std::make_unique<TemporalQuality>(table_, config_.min_points);
+    switches_ = std::make_unique<IdSwitches>(config_.min_points);
     errors_ = ObjectErrors(config_.min_points);
     objects_ = {};
     matcher_->reset();
@@ -189,7 +204,10 @@ private:
       status.summary(Level::OK, quality_->scanCount() > 0 ? "evaluating" : "no pair of clouds yet");
     const PanopticFigures values = quality_->figures();
     const PlainNumbers plain;
-    for (const Figure& figure : figures_) status.addf(figure.name, "%.4f", values.*figure.value);
+    for (const auto& figure : figures_) status.addf(figure.name, "%.4f", values.*figure.value);
+    const TemporalFigures over_time = temporal_->figures();
+    for (const auto& figure : over_time_) status.addf(figure.name, "%.4f", over_time.*figure.value);
+    status.add("id switches", std::to_string(switches_->count()));
     status.add("scans evaluated", std::to_string(quality_->scanCount()));
     status.add("true objects", std::to_string(objects_.total()));
     status.add("true objects split", std::to_string(objects_.split));
@@ -227,6 +245,8 @@ private:
   std::mutex mutex_;                                 ///< callbacks may come in several threads, the service's for one
   std::unique_ptr<StampMatcher<CloudPtr>> matcher_;  ///< left: input, right: ground truth
   std::unique_ptr<PanopticQuality> quality_;
+  std::unique_ptr<TemporalQuality> temporal_;
+  std::unique_ptr<IdSwitches> switches_;
   ObjectErrors errors_;
   ObjectErrorCounts objects_;
   Labels predicted_, truth_;
@@ -234,11 +254,14 @@ private:
   std::string last_error_;
   ros::WallTime last_logged_;
 
-  Figure figures_[5] = {{"pq", &PanopticFigures::pq, {}},
-                        {"rq", &PanopticFigures::rq, {}},
-                        {"sq", &PanopticFigures::sq, {}},
-                        {"pq_things", &PanopticFigures::pq_th, {}},
-                        {"pq_things_present", &PanopticFigures::pq_th_present, {}}};
+  Figure<PanopticFigures> figures_[5] = {{"pq", &PanopticFigures::pq, {}},
+                                         {"rq", &PanopticFigures::rq, {}},
+                                         {"sq", &PanopticFigures::sq, {}},
+                                         {"pq_things", &PanopticFigures::pq_th, {}},
+                                         {"pq_things_present", &PanopticFigures::pq_th_present, {}}};
+  Figure<TemporalFigures> over_time_[3] = {{"lstq", &TemporalFigures::lstq, {}},
+                                           {"s_assoc", &TemporalFigures::s_assoc, {}},
+                                           {"s_cls", &TemporalFigures::s_cls, {}}};
   std::unique_ptr<diagnostic_updater::Updater> updater_;
   ros::WallTimer timer_;
   ros::ServiceServer reset_;

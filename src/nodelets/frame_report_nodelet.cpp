@@ -5,6 +5,7 @@
 #include "reporting/frame_report.h"
 #include "reporting/report_output.h"
 #include "reporting/stage_message.h"
+#include "reporting/tracked_pictures.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
 #include "ros/parameter_server.h"
@@ -34,6 +35,7 @@ struct ReportConfig
   double timeout_s = 15.0;        ///< without a new frame, then the process ends
   std::string picture;            ///< PNG file
   std::string report;             ///< file for the lines, standard output when empty
+  bool track = false;             ///< the picture shows what the trackers NAME_tracker make of it
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -43,6 +45,7 @@ struct ReportConfig
     visitor("timeout_s", self.timeout_s, 0.1, 1e6);
     visitor("picture", self.picture, std::vector<std::string>{});
     visitor("report", self.report, std::vector<std::string>{});
+    visitor("track", self.track);
   }
 };
 
@@ -69,6 +72,7 @@ public:
     watchdog_.stop();
     for (auto& subscriber : stages_) subscriber.shutdown();
     for (auto& subscriber : clouds_) subscriber.shutdown();
+    tracked_.stop();
     if (report_) finish();
   }
 
@@ -127,6 +131,8 @@ private:
       clouds_.push_back(subscribeChecked<PanopticCloud>(
           getNodeHandle(), algorithm + "/output", kQueue,
           [this, algorithm](const CloudPtr& cloud) { receiveCloud(algorithm, cloud); }, onError()));
+    if (!config_.track || config_.picture.empty()) return;
+    for (const auto& algorithm : algorithms_) tracked_.listen(getNodeHandle(), algorithm);
   }
 
   MessageErrorCallback onError()
@@ -205,6 +211,11 @@ private:
     std::vector<ScanPanel> panels;
     for (const auto& algorithm : algorithms_)
     {
+      if (const auto panel = tracked_.panel(algorithm))
+      {
+        panels.push_back(*panel);
+        continue;
+      }
       auto& [waiting, recent, shown] = tracks_[algorithm];
       if (!shown.cloud && !recent.empty()) shown = recent.rbegin()->second;
       if (!shown.cloud) continue;
@@ -231,6 +242,7 @@ private:
   std::map<std::string, Track> tracks_;  ///< by algorithm
   ros::WallTime last_frame_;
 
+  TrackedPictures tracked_;
   std::vector<ros::Subscriber> stages_, clouds_;
   ros::WallTimer watchdog_;
 };

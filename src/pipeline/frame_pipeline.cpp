@@ -87,12 +87,28 @@ void FramePipeline::reconfigure(const PipelineConfig& config, std::unique_ptr<Cl
 }
 
 void FramePipeline::segment(const LabelledCloud& in)
+{
+  segment(in, nullptr);
+}
+
+void FramePipeline::process(const LabelledCloud& in, PanopticCloud& out)
+{
+  segment(in, &out);
+  Stopwatch stopwatch;
+  paintThings(out);
+  times_.paint_ms = stopwatch.lap();
+}
+
+void FramePipeline::segment(const LabelledCloud& in, PanopticCloud* out)
 try
 {
   Stopwatch stopwatch;
   colored_ = false;
   if (in.height == 1 && clusterer_->needsScanLines() && !comesInOneSweep(in)) throwNoScanLines(in.size());
-  selectThings(in, *table_, selection_, things_);
+  if (out != nullptr)
+    selectThings(in, *table_, selection_, things_, *out);
+  else
+    selectThings(in, *table_, selection_, things_);
   times_.select_ms = stopwatch.lap();
 
   clusterer_->cluster(things_, component_);
@@ -123,22 +139,14 @@ void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
                                 std::to_string(things_.rows) + " (width x height), found one of " +
                                 std::to_string(in.width) + " x " + std::to_string(in.height));
   Stopwatch stopwatch;
-  out.header = in.header;
-  out.width = in.width, out.height = in.height;
-  out.is_dense = in.is_dense;
-  out.sensor_origin_ = in.sensor_origin_, out.sensor_orientation_ = in.sensor_orientation_;
-  out.points.resize(in.points.size());
-  const LabelledPoint* from = in.points.data();
-  for (auto& to : out.points)
-  {
-    to.getVector4fMap() = from->getVector4fMap();
-    to.intensity = from->intensity;
-    to.label = from->label;
-    to.instance = 0;
-    to.rgb = table_->rgbOf(from->label);
-    ++from;
-  }
+  copyInClassColors(in, *table_, out);
+  paintThings(out);
+  times_.paint_ms = stopwatch.lap();
+}
 
+/// Ids, colours and votes on a copy in class colours.
+void FramePipeline::paintThings(PanopticCloud& out)
+{
   const auto& colors = this->colors();
   for (std::uint32_t row = 0; row < things_.rows; ++row)
   {
@@ -154,6 +162,5 @@ void FramePipeline::paint(const LabelledCloud& in, PanopticCloud& out)
       if (voted != things_.class_index[i]) to.label = (*table_)[voted].ids[0];
     }
   }
-  times_.paint_ms = stopwatch.lap();
 }
 }  // namespace lidar_panoptic_clustering

@@ -75,15 +75,19 @@ void pixelInstances(const ThingScan& things, const Instances& instances, std::ve
       instance_of_pixel[row * things.columns + things.points[i].column] = instances.id[i];
 }
 
-HiddenPointLabeller::HiddenPointLabeller(std::shared_ptr<const ClassTable> table, std::uint32_t class_bits)
-    : table_(std::move(table)), class_bits_(class_bits), thing_class_(table_->size(), kUnknownClass)
+HiddenPointLabeller::HiddenPointLabeller(std::shared_ptr<const ClassTable> table, std::uint32_t class_bits,
+                                         std::uint32_t own_ids_above)
+    : table_(std::move(table)),
+      class_bits_(class_bits),
+      own_ids_above_(own_ids_above),
+      thing_class_(table_->size(), kUnknownClass)
 {
   for (std::size_t i = 0; i < table_->size(); ++i)
     if ((*table_)[static_cast<ClassIndex>(i)].isThing()) thing_class_[i] = static_cast<ClassIndex>(i);
 }
 
-void HiddenPointLabeller::label(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-                                const Projection& projection, const std::vector<std::uint32_t>& instance_of_pixel,
+void HiddenPointLabeller::label(ScanPoints scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
+                                const std::vector<std::uint32_t>& instance_of_pixel,
                                 std::vector<std::uint32_t>& instance)
 {
   requireSize("labels, one a point", labels.size(), scan.size());
@@ -117,7 +121,7 @@ void HiddenPointLabeller::takeOwners(const std::vector<std::uint32_t>& labels, c
   instance.assign(labels.size(), 0);
   pixel_class_.assign(projection.owner_of_pixel.size(), kUnknownClass);
   hidden_.clear();
-  largest_id_ = 0;
+  largest_id_ = own_ids_above_;
   for (std::uint32_t point = 0; point < labels.size(); ++point)
   {
     const ClassIndex class_index = thing_class_[table_->find(labels[point] & class_bits_)];
@@ -134,8 +138,8 @@ void HiddenPointLabeller::takeOwners(const std::vector<std::uint32_t>& labels, c
   }
 }
 
-std::uint32_t HiddenPointLabeller::nearestOwner(const std::vector<ScanPoint>& scan, const Projection& projection,
-                                                std::uint32_t point, ClassIndex class_index, const Window& window) const
+std::uint32_t HiddenPointLabeller::nearestOwner(ScanPoints scan, const Projection& projection, std::uint32_t point,
+                                                ClassIndex class_index, const Window& window) const
 {
   const ScanPoint& from = scan[point];
   float least = std::numeric_limits<float>::infinity();

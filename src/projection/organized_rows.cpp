@@ -19,6 +19,8 @@ bool isReturn(const ScanPoint& p)
 void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
 {
   const std::size_t size = std::size_t{raw.width} * raw.height;
+  // a point a pixel: as the frame before left it where that had as many points and was of rows too
+  const bool has_lists = out.organized_input && out.image.begin.size() == size + 1;
   const bool rows_are_rings = orientation == Orientation::kRowsAreRings;
   out.points.resize(size);
   out.labels.resize(size);
@@ -32,7 +34,7 @@ void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
   image.owner_of_pixel.resize(size);
   image.points.resize(size);
   image.begin.resize(size + 1);
-  for (std::size_t i = 0; i <= size; ++i) image.begin[i] = static_cast<std::uint32_t>(i);
+  for (std::size_t i = 0; i <= size && !has_lists; ++i) image.begin[i] = static_cast<std::uint32_t>(i);
 }
 
 /// Gives `count` neighbouring pixels their points, which lie `step` apart as sent.
@@ -59,8 +61,8 @@ void paint(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t
 
 void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement& placement, OrganizedScan& out)
 {
-  out.organized_input = true;
   resize(raw, placement.orientation, out);
+  out.organized_input = true;
   const std::size_t width = raw.width, height = raw.height;
   const bool rows_are_rings = placement.orientation == Orientation::kRowsAreRings;
   const auto& row_of_line = placement.row_of_line;

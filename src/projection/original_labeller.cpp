@@ -9,11 +9,14 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-constexpr std::uint32_t kNoVote = 0xFFFFFFFFU;
+VoxelKey keyOf(std::uint32_t id)
+{
+  return {static_cast<std::int32_t>(id & 0xFFFFU), static_cast<std::int32_t>(id >> 16U), 0};
 }
+}  // namespace
 
-OriginalLabeller::OriginalLabeller(std::shared_ptr<const ClassTable> table)
-    : table_(std::move(table)), hidden_points_(table_, 0xFFFFFFFFU)
+OriginalLabeller::OriginalLabeller(std::shared_ptr<const ClassTable> table, bool lasting_ids)
+    : table_(std::move(table)), hidden_points_(table_, 0xFFFFFFFFU, lasting_ids ? kNoTrack : 0)
 {
 }
 
@@ -43,25 +46,29 @@ void OriginalLabeller::carryBack(const OrganizedScan& scan, const PanopticCloud&
   hidden_points_.label(scan.points, scan.labels, image, instance_of_pixel_, instance);
   takeVotes(scan, clustered);
   label = scan.labels;
+  if (voted_label_.empty()) return;
   for (std::size_t i = 0; i < label.size(); ++i)
   {
-    if (instance[i] >= voted_label_.size()) continue;  // a hidden object of its own
-    const std::uint32_t voted = voted_label_[instance[i]];
-    if (voted != kNoVote && table_->find(label[i]) != table_->find(voted)) label[i] = voted;
+    if (instance[i] == 0) continue;
+    const std::uint32_t number = voted_.find(keyOf(instance[i]));
+    if (number == VoxelIndex::kNone) continue;
+    const std::uint32_t voted = voted_label_[number];
+    if (table_->find(label[i]) != table_->find(voted)) label[i] = voted;
   }
 }
 
 /// The vote changes the labels of the outvoted points alone, all of an instance to the same one.
 void OriginalLabeller::takeVotes(const OrganizedScan& scan, const PanopticCloud& clustered)
 {
-  std::uint32_t largest = 0;
-  for (const std::uint32_t id : instance_of_pixel_) largest = std::max(largest, id);
-  voted_label_.assign(std::size_t{largest} + 1, kNoVote);
+  voted_.reset();
+  voted_label_.clear();
   for (std::size_t pixel = 0; pixel < clustered.size(); ++pixel)
   {
     const std::uint32_t owner = scan.image.owner_of_pixel[pixel], id = instance_of_pixel_[pixel];
-    if (owner == Projection::kNone || id == 0) continue;
-    if (clustered.points[pixel].label != scan.labels[owner]) voted_label_[id] = clustered.points[pixel].label;
+    if (owner == Projection::kNone || id == 0 || clustered.points[pixel].label == scan.labels[owner]) continue;
+    const std::uint32_t number = voted_.insert(keyOf(id));
+    voted_label_.resize(voted_.size());
+    voted_label_[number] = clustered.points[pixel].label;
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -26,8 +26,7 @@ float squaredRange(const ScanPoint& p)
   return p.x * p.x + p.y * p.y + p.z * p.z;
 }
 
-void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, std::uint32_t class_bits,
-           Projection& out)
+void paint(ScanPoints scan, const std::vector<std::uint32_t>& labels, std::uint32_t class_bits, Projection& out)
 {
   const LabelledPoint empty = noReturn();
   for (std::size_t pixel = 0; pixel < out.owner_of_pixel.size(); ++pixel)
@@ -44,7 +43,7 @@ void paint(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>&
 }
 }  // namespace
 
-void DirectionProjector::project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
+void DirectionProjector::project(ScanPoints scan, const std::vector<std::uint32_t>& labels,
                                  const std::vector<PointDirection>& directions, std::uint32_t rows,
                                  std::uint32_t columns, std::uint32_t class_bits, Projection& out, float shift)
 {
@@ -62,8 +61,8 @@ void DirectionProjector::project(const std::vector<ScanPoint>& scan, const std::
   paint(scan, labels, class_bits, out);
 }
 
-void DirectionProjector::locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions,
-                                std::uint32_t columns, float shift, Projection& out)
+void DirectionProjector::locate(ScanPoints scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
+                                float shift, Projection& out)
 {
   hidden_.clear();
   returns_ = 0;
@@ -120,8 +119,7 @@ PointProjector::PointProjector(const ProjectionConfig& config)
   validateParameters(config);
 }
 
-void PointProjector::project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-                             Projection& out)
+void PointProjector::project(ScanPoints scan, const std::vector<std::uint32_t>& labels, Projection& out)
 {
   if (!labels.empty() && labels.size() != scan.size())
     throw std::invalid_argument("expected one label a point, found " + std::to_string(labels.size()) + " labels for " +
@@ -131,8 +129,7 @@ void PointProjector::project(const std::vector<ScanPoint>& scan, const std::vect
   projector_.project(scan, labels, directions_, rows_, columns_, 0xFFFFU, out);
 }
 
-std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, const Sweep& sweep,
-                         std::vector<PointDirection>& directions)
+std::uint32_t unfoldScan(ScanPoints scan, const Sweep& sweep, std::vector<PointDirection>& directions)
 {
   RingCounter rings(sweep);
   std::uint32_t ring = 0;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cstring>
 #include <stdexcept>
 
 namespace lidar_panoptic_clustering
@@ -64,6 +65,37 @@ const RawField* findCoordinate(const RawCloud& cloud, const char* name)
     throw std::invalid_argument(std::string("expected a field '") + name + "', found " + describeFields(cloud));
   return field;
 }
+
+/// Whether coordinates and intensity are float32 and the coordinates lie one after the other, as of nearly all drivers.
+bool areFloatsInARow(const ScanFields& fields)
+{
+  const auto isFloat = [](const RawField& field) { return field.type() == NumberType::kFloat32; };
+  return isFloat(*fields.x) && isFloat(*fields.y) && isFloat(*fields.z) && fields.intensity != nullptr &&
+         isFloat(*fields.intensity) && fields.y->offset == fields.x->offset + sizeof(float) &&
+         fields.z->offset == fields.y->offset + sizeof(float);
+}
+
+/// These, in one go.
+void copyPoints(const PointRun& run, const ScanFields& fields, ScanPoint* to)
+{
+  const std::uint8_t *place = run.first + fields.x->offset, *intensity = run.first + fields.intensity->offset;
+  for (std::size_t i = 0; i < run.count; ++i, ++to, place += run.step, intensity += run.step)
+  {
+    std::memcpy(&to->x, place, 3 * sizeof(float));
+    std::memcpy(&to->remission, intensity, sizeof(float));
+  }
+}
+
+void readPoints(const PointRun& run, const ScanFields& fields, ScanPoint* to)
+{
+  readFloats(run, *fields.x, &to->x, sizeof(ScanPoint));
+  readFloats(run, *fields.y, &to->y, sizeof(ScanPoint));
+  readFloats(run, *fields.z, &to->z, sizeof(ScanPoint));
+  if (fields.intensity != nullptr)
+    readFloats(run, *fields.intensity, &to->remission, sizeof(ScanPoint));
+  else
+    for (std::size_t i = 0; i < run.count; ++i) to[i].remission = 0.0F;
+}
 }  // namespace
 
 const RawField& findLabelField(const RawCloud& cloud, const std::string& name)
@@ -91,18 +123,15 @@ ScanFields findScanFields(const RawCloud& cloud, const FieldNames& names, bool w
 void readScan(const RawCloud& cloud, const ScanFields& fields, std::size_t row, std::size_t column, std::size_t count,
               ScanPoint* points, std::uint32_t* labels)
 {
+  const bool in_a_row = areFloatsInARow(fields);
   constexpr std::size_t kRun = 256;  // all fields of a run are read from the cache
   for (std::size_t begin = 0; begin < count; begin += kRun)
   {
     const PointRun run{cloud.point(row, column + begin), cloud.point_step, std::min(kRun, count - begin)};
-    ScanPoint* to = points + begin;
-    readFloats(run, *fields.x, &to->x, sizeof(ScanPoint));
-    readFloats(run, *fields.y, &to->y, sizeof(ScanPoint));
-    readFloats(run, *fields.z, &to->z, sizeof(ScanPoint));
-    if (fields.intensity != nullptr)
-      readFloats(run, *fields.intensity, &to->remission, sizeof(ScanPoint));
+    if (in_a_row)
+      copyPoints(run, fields, points + begin);
     else
-      for (std::size_t i = 0; i < run.count; ++i) to[i].remission = 0.0F;
+      readPoints(run, fields, points + begin);
     if (fields.label != nullptr)
       readIds(run, *fields.label, labels + begin, sizeof(std::uint32_t));
     else

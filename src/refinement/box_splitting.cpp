@@ -9,81 +9,108 @@ namespace
 {
 constexpr std::uint32_t kFewestPoints = 10;
 constexpr std::uint32_t kSmallestShare = 10;  // one in ten
-constexpr int kFinest = 2;
+
+std::uint32_t fewestOf(std::uint32_t points)
+{
+  return std::max(kFewestPoints, points / kSmallestShare);
+}
 }  // namespace
 
-std::uint32_t BoxSplitter::split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach,
-                                 int& tenths, std::vector<std::uint32_t>& part)
+bool BoxSplitter::begin(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach)
 {
-  const std::uint32_t fewest = std::max(kFewestPoints, count / kSmallestShare);
-  if (count < 2 * kFewestPoints || tenths < kFinest) return 1;
-  // what hangs together at the finest distance does at the others too: a rest too small leaves nothing to part
-  link(scan, things, count, 0.1F * static_cast<float>(kFinest) * reach);
-  countSizeable(fewest);
-  if (count - *std::max_element(size_of_.begin(), size_of_.end()) < fewest) return 1;
-  for (; tenths >= kFinest; --tenths)
+  if (count < 2 * kFewestPoints) return false;
+  tree_.build(scan, things, count, reach);
+  std::uint32_t largest = 0;
+  for (std::uint32_t leaf = 0; leaf < tree_.size(); ++leaf) largest = std::max(largest, tree_.pointsOf(leaf));
+  if (count - largest < fewestOf(count)) return false;
+  outline_.assign(tree_.size(), OrderedFootprint());
+  for (std::uint32_t k = 0; k < count; ++k)
   {
-    link(scan, things, count, 0.1F * static_cast<float>(tenths) * reach);
-    const std::uint32_t parts = countSizeable(fewest);
+    const ThingPoint& p = scan.points[things[k]];
+    outline_[tree_.leafOf(k)].add(p.x, p.y, k);
+  }
+  size_of_.assign(tree_.size(), 0);
+  part_of_.resize(tree_.size());
+  whole_.resize(tree_.size());
+  return true;
+}
+
+/// What hangs together at the finest distance does at the others too: a rest too small leaves nothing to part.
+bool BoxSplitter::isOneAtTheFinest(const std::uint32_t* leaves, std::uint32_t count, std::uint32_t& points) const
+{
+  std::uint32_t largest = 0;
+  points = 0;
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    largest = std::max(largest, tree_.pointsOf(leaves[k]));
+    points += tree_.pointsOf(leaves[k]);
+  }
+  return points < 2 * kFewestPoints || points - largest < fewestOf(points);
+}
+
+std::uint32_t BoxSplitter::split(const std::uint32_t* leaves, std::uint32_t count, int& tenths,
+                                 std::vector<std::uint32_t>& part)
+{
+  std::uint32_t points = 0;
+  if (tenths < LinkageTree::kFinest || isOneAtTheFinest(leaves, count, points)) return 1;
+  for (; tenths >= LinkageTree::kFinest; --tenths)
+  {
+    const std::uint32_t parts = countSizeable(leaves, count, tenths, fewestOf(points));
     if (parts < 2) continue;
-    joinRest(scan, things, parts);
+    joinRest(leaves, count, tenths);
+    const auto& component = tree_.components(tenths);
     part.resize(count);
-    for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-      cells_.forEach(cell, [&](std::uint32_t k) { part[k] = part_of_[component_of_cell_[cell]]; });
+    for (std::uint32_t k = 0; k < count; ++k) part[k] = part_of_[component[leaves[k]]];
     return parts;
   }
   return 1;
 }
 
-/// Finds the components of points linked within `distance` [m].
-void BoxSplitter::link(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float distance)
-{
-  cells_.clear(count);
-  for (std::uint32_t k = 0; k < count; ++k)
-    cells_.add(scan.points[things[k]].x, scan.points[things[k]].y, 0, distance, k);
-  cells_.close();
-  distance_.assign(1, distance);
-  cells_.findComponents(distance_, component_of_cell_);
-}
-
 /// Numbers the components that are large enough; the others have no part yet.
-std::uint32_t BoxSplitter::countSizeable(std::uint32_t fewest)
+std::uint32_t BoxSplitter::countSizeable(const std::uint32_t* leaves, std::uint32_t count, int tenths,
+                                         std::uint32_t fewest)
 {
-  size_of_.assign(cells_.size(), 0);
-  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-    cells_.forEach(cell, [&](std::uint32_t) { ++size_of_[component_of_cell_[cell]]; });
-  part_of_.assign(cells_.size(), kNone);
-  std::uint32_t parts = 0;
-  for (std::uint32_t c = 0; c < cells_.size(); ++c)
-    if (size_of_[c] >= fewest) part_of_[c] = parts++;
-  return parts;
+  const auto& component = tree_.components(tenths);
+  for (std::uint32_t k = 0; k < count; ++k) size_of_[component[leaves[k]]] = 0;
+  for (std::uint32_t k = 0; k < count; ++k) size_of_[component[leaves[k]]] += tree_.pointsOf(leaves[k]);
+  sizeable_.clear();
+  for (std::uint32_t k = 0; k < count; ++k)
+  {
+    const std::uint32_t c = component[leaves[k]];
+    if (c != leaves[k]) continue;
+    part_of_[c] = size_of_[c] < fewest ? kNone : static_cast<std::uint32_t>(sizeable_.size());
+    if (part_of_[c] != kNone) sizeable_.push_back(c);
+  }
+  return static_cast<std::uint32_t>(sizeable_.size());
 }
 
-void BoxSplitter::joinRest(const ThingScan& scan, const std::uint32_t* things, std::uint32_t parts)
+void BoxSplitter::joinRest(const std::uint32_t* leaves, std::uint32_t count, int tenths)
 {
-  outline_.assign(cells_.size(), Footprint());
-  for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
-    cells_.forEach(cell,
-                   [&](std::uint32_t k)
-                   {
-                     const ThingPoint& p = scan.points[things[k]];
-                     outline_[component_of_cell_[cell]].add(p.x, p.y);
-                   });
-  sizeable_.resize(parts);
-  for (std::uint32_t c = 0; c < cells_.size(); ++c)
-    if (part_of_[c] != kNone) sizeable_[part_of_[c]] = c;
-  for (std::uint32_t c = 0; c < cells_.size(); ++c)
+  const auto& component = tree_.components(tenths);
+  for (std::uint32_t k = 0; k < count; ++k)
   {
-    if (size_of_[c] == 0 || part_of_[c] != kNone) continue;
-    const auto gap = [&](std::uint32_t k)
-    {
-      const Footprint& other = outline_[sizeable_[k]];
-      return std::make_tuple(outline_[c].gapTo(other).squaredDistance(), other.minX(), other.minY());
-    };
-    std::uint32_t nearest = 0;
-    for (std::uint32_t k = 1; k < parts; ++k)
-      if (gap(k) < gap(nearest)) nearest = k;
-    part_of_[c] = nearest;
+    const std::uint32_t leaf = leaves[k], c = component[leaf];
+    if (c == leaf)
+      whole_[c] = outline_[leaf];
+    else
+      whole_[c].add(outline_[leaf]);
   }
+  for (std::uint32_t k = 0; k < count; ++k)
+    if (component[leaves[k]] == leaves[k] && part_of_[leaves[k]] == kNone)
+      part_of_[leaves[k]] = nearestPart(whole_[leaves[k]].outline());
+}
+
+std::uint32_t BoxSplitter::nearestPart(const Footprint& outline) const
+{
+  const auto gap = [&](std::uint32_t k)
+  {
+    const Footprint& other = whole_[sizeable_[k]].outline();
+    return std::make_tuple(outline.gapTo(other).squaredDistance(), other.minX(), other.minY());
+  };
+  std::uint32_t nearest = 0;
+  auto least = gap(0);
+  for (std::uint32_t k = 1; k < sizeable_.size(); ++k)
+    if (const auto found = gap(k); found < least) nearest = k, least = found;
+  return nearest;
 }
 }  // namespace lidar_panoptic_clustering

@@ -26,17 +26,9 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
   sets_.reset(objects.size());
   if (distance > 0.0F && findReaches(objects, table, kRounding * distance))
   {
-    const auto groupOf = [&](std::uint32_t object) { return table[objects[object].class_index].group; };
-    cells_.clear(scan.size());
-    for (std::uint32_t i = 0; i < scan.size(); ++i)
-    {
-      const ThingPoint& p = scan.points[i];
-      if (reach_[object_of_thing[i]].contains(p.x, p.y)) cells_.add(p.x, p.y, groupOf(object_of_thing[i]), distance, i);
-    }
-    cells_.close();
-    distance_of_group_.assign(table.groupCount(), distance);
-    cells_.findComponents(distance_of_group_, component_of_cell_);
-    uniteComponents(object_of_thing);
+    sortByGroup(scan, table, objects, object_of_thing);
+    for (const auto& things : things_of_group_)
+      if (things.size() > 1) uniteClose(scan, things, distance, object_of_thing);
   }
   sets_.flatten(whole_of);
 }
@@ -45,21 +37,19 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
 bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance)
 {
   reach_.assign(objects.size(), {kFar, -kFar, kFar, -kFar});
-  order_.resize(objects.size());
-  std::iota(order_.begin(), order_.end(), 0U);
-  std::sort(order_.begin(), order_.end(),
-            [&objects](std::uint32_t a, std::uint32_t b)
-            { return objects[a].footprint.minX() < objects[b].footprint.minX(); });
+  by_min_x_.clear();
+  for (std::uint32_t k = 0; k < objects.size(); ++k) by_min_x_.push_back({objects[k].footprint.minX(), k});
+  std::sort(by_min_x_.begin(), by_min_x_.end(), [](const Start& a, const Start& b) { return a.min_x < b.min_x; });
 
   bool found = false;
   std::size_t pairs_left = kMostPairs * objects.size();
-  for (std::size_t i = 0; i < order_.size(); ++i)
+  for (std::size_t i = 0; i < by_min_x_.size(); ++i)
   {
-    const RefinedObject& a = objects[order_[i]];
-    for (std::size_t j = i + 1; j < order_.size(); ++j)
+    const RefinedObject& a = objects[by_min_x_[i].object];
+    for (std::size_t j = i + 1; j < by_min_x_.size(); ++j)
     {
-      const RefinedObject& b = objects[order_[j]];
-      if (b.footprint.minX() - a.footprint.maxX() >= distance) break;
+      if (by_min_x_[j].min_x - a.footprint.maxX() >= distance) break;
+      const RefinedObject& b = objects[by_min_x_[j].object];
       if (pairs_left-- == 0)
       {
         reach_.assign(objects.size(), {-kFar, kFar, -kFar, kFar});
@@ -67,20 +57,46 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
       }
       if (table[a.class_index].group != table[b.class_index].group) continue;
       if (!a.footprint.mayBeCloser(b.footprint, distance)) continue;
-      reach_[order_[i]].add(b.footprint, distance);
-      reach_[order_[j]].add(a.footprint, distance);
+      reach_[by_min_x_[i].object].add(b.footprint, distance);
+      reach_[by_min_x_[j].object].add(a.footprint, distance);
       found = true;
     }
   }
   return found;
 }
 
-void ClassBridging::uniteComponents(const std::vector<std::uint32_t>& object_of_thing)
+/// Lists the things that lie within reach of another object, group by group.
+void ClassBridging::sortByGroup(const ThingScan& scan, const ClassTable& table,
+                                const std::vector<RefinedObject>& objects,
+                                const std::vector<std::uint32_t>& object_of_thing)
 {
+  things_of_group_.resize(table.groupCount());
+  for (auto& things : things_of_group_) things.clear();
+  for (std::uint32_t i = 0; i < scan.size(); ++i)
+  {
+    const std::uint32_t object = object_of_thing[i];
+    if (reach_[object].contains(scan.points[i].x, scan.points[i].y))
+      things_of_group_[table[objects[object].class_index].group].push_back(i);
+  }
+}
+
+void ClassBridging::uniteClose(const ThingScan& scan, const std::vector<std::uint32_t>& things, float distance,
+                               const std::vector<std::uint32_t>& object_of_thing)
+{
+  cells_.clear(distance);
+  for (const std::uint32_t i : things) cells_.add(scan.points[i].x, scan.points[i].y, i);
+  cells_.close();
+  cells_.link(distance);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
   {
-    const std::uint32_t whole = object_of_thing[cells_.firstThing(component_of_cell_[cell])];
-    cells_.forEach(cell, [&](std::uint32_t thing) { sets_.unite(object_of_thing[thing], whole); });
+    std::uint32_t last = object_of_thing[cells_.firstThing(cells_.components()[cell])];
+    cells_.forEach(cell,
+                   [&](std::uint32_t thing)
+                   {
+                     const std::uint32_t object = object_of_thing[thing];
+                     if (object != last) sets_.unite(object, last);
+                     last = object;
+                   });
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -131,15 +131,20 @@ bool PartMerger::isParted(const std::vector<RefinedObject>& objects, std::uint32
 
 void PartMerger::sortObjects(const std::vector<RefinedObject>& objects)
 {
-  order_.resize(objects.size());
-  std::iota(order_.begin(), order_.end(), 0U);
   const auto place = [&objects](std::uint32_t i)
   {
     const RefinedObject& o = objects[i];
     return std::make_tuple(o.footprint.minX(), o.footprint.minY(), o.footprint.maxX(), o.footprint.maxY(),
                            o.point_count, i);
   };
-  std::sort(order_.begin(), order_.end(), [&](std::uint32_t a, std::uint32_t b) { return place(a) < place(b); });
+  // by the first of these alone, which lies in the entry sorted; by all where it is the same
+  by_min_x_.clear();
+  for (std::uint32_t i = 0; i < objects.size(); ++i) by_min_x_.push_back({objects[i].footprint.minX(), i});
+  std::sort(by_min_x_.begin(), by_min_x_.end(),
+            [&place](const Start& a, const Start& b)
+            { return a.min_x != b.min_x ? a.min_x < b.min_x : place(a.object) < place(b.object); });
+  order_.clear();
+  for (const Start& start : by_min_x_) order_.push_back(start.object);
   sorted_.clear();
   for (const std::uint32_t i : order_) sorted_.push_back(objects[i]);
 }

@@ -3,6 +3,7 @@
 #include "reporting/stage_message.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/object_list.h"
 #include "ros/parameter_server.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -65,6 +66,7 @@ void ClusterNodelet::advertise()
   auto& nh = getPrivateNodeHandle();
   output_ = advertiseAlone<PanopticCloud>(nh, "output", 1, status, status);
   markers_ = advertiseAlone<visualization_msgs::MarkerArray>(nh, "markers", 1, status, status);
+  objects_.advertise(nh, status);
   stages_ = advertiseAlone<diagnostic_msgs::DiagnosticArray>(nh, "stages", 10);
 }
 
@@ -83,6 +85,7 @@ void ClusterNodelet::shutdown()
   input_.shutdown();
   output_.shutdown();
   markers_.shutdown();
+  objects_.shutdown();
   stages_.shutdown();
 }
 
@@ -102,7 +105,7 @@ void ClusterNodelet::connect()
 {
   const std::lock_guard<std::mutex> lock(connect_mutex_);
   if (closed_) return;
-  if (output_.getNumSubscribers() + markers_.getNumSubscribers() == 0)
+  if (listeners() == 0)
   {
     input_.shutdown();
     latched_.forget();
@@ -124,8 +127,8 @@ void ClusterNodelet::connect()
 Idle ClusterNodelet::describeIdle()
 {
   const std::lock_guard<std::mutex> lock(connect_mutex_);
-  return lidar_panoptic_clustering::describeIdle(output_.getNumSubscribers() + markers_.getNumSubscribers(),
-                                                 output_.getTopic() + " or " + markers_.getTopic(), input_);
+  return lidar_panoptic_clustering::describeIdle(
+      listeners(), output_.getTopic() + ", " + markers_.getTopic() + " or " + objects_.topic(), input_);
 }
 
 void ClusterNodelet::refuse(const std::string& error)
@@ -157,19 +160,17 @@ void ClusterNodelet::process(const LabelledCloud& cloud)
       pipeline_->reconfigure(pending->pipeline, std::move(pending->clusterer));
   }
 
-  pipeline_->segment(cloud);
   if (output_.getNumSubscribers() > 0)
   {
-    const PanopticCloud::Ptr out(new PanopticCloud);
-    pipeline_->paint(cloud, *out);
+    const PanopticCloud::Ptr out = pool_.take();
+    pipeline_->process(cloud, *out);
     output_.publish(pcl::ros_ptr(out));
   }
-  if (markers_.getNumSubscribers() > 0)
+  else
   {
-    const auto& boxes = boxes_.fit(pipeline_->things(), pipeline_->instances());
-    markers_.publish(list_.update(pcl_conversions::fromPCL(cloud.header), pipeline_->table(), pipeline_->instances(),
-                                  boxes, pipeline_->colors(), ros::Time::now()));
+    pipeline_->segment(cloud);
   }
+  if (markers_.getNumSubscribers() + objects_.listeners() > 0) publishObjects(cloud.header);
   const StageTimes& times = pipeline_->times();
   const StreamDiagnostics::StageMilliseconds stages = {{"select", times.select_ms},
                                                        {"cluster", times.cluster_ms},
@@ -178,6 +179,16 @@ void ClusterNodelet::process(const LabelledCloud& cloud)
   diagnostics_.processed(stages);
   if (stages_.getNumSubscribers() > 0) publishStages(cloud.header, stages);
   warnOfUnknownLabels();
+}
+
+void ClusterNodelet::publishObjects(const pcl::PCLHeader& header)
+{
+  const auto& boxes = boxes_.fit(pipeline_->things(), pipeline_->instances());
+  const auto list = listObjects(pcl_conversions::fromPCL(header), pipeline_->table(), pipeline_->things(),
+                                pipeline_->instances(), boxes);
+  objects_.publish(list);
+  if (markers_.getNumSubscribers() > 0)
+    markers_.publish(marker_list_.update(*list, pipeline_->colors(), ros::Time::now()));
 }
 
 void ClusterNodelet::publishStages(const pcl::PCLHeader& header, const StreamDiagnostics::StageMilliseconds& stages)

@@ -1,11 +1,13 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/pipeline/factory.h"
 #include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/refinement/instance_boxes.h"
 #include "ros/instance_markers.h"
 #include "ros/latched_input.h"
 #include "ros/mailbox.h"
+#include "ros/object_outputs.h"
 #include "ros/stream_diagnostics.h"
 
 #include <dynamic_reconfigure/server.h>
@@ -22,9 +24,9 @@
 namespace lidar_panoptic_clustering
 {
 /// What all clustering nodelets share: ~input organised LabelledCloud -> ~output PanopticCloud of the same points,
-/// ~markers the object list, ~stages figures of each scan (things, instances, milliseconds a stage; hardware_id is the
-/// algorithm), /diagnostics. Subscribes only while someone listens to ~output or ~markers, and works only on the
-/// outputs that are listened to.
+/// ~objects the object list, which also goes out as ~markers and, where vision_msgs was there, as ~detections; ~stages
+/// figures of each scan (things, instances, milliseconds a stage; hardware_id is the algorithm), /diagnostics.
+/// Subscribes only while someone listens to one of the first four, and works only on the outputs that are listened to.
 ///
 /// The callback puts the newest scan into a mailbox of one; a thread of the nodelet's own works on it. A scan that
 /// cannot be used is dropped, logged and shown in the diagnostics; the next one is looked at afresh. The scan of a
@@ -57,16 +59,22 @@ private:
   void advertise();
   void connect();
   Idle describeIdle();
+  std::uint32_t listeners() const
+  {
+    return output_.getNumSubscribers() + markers_.getNumSubscribers() + objects_.listeners();
+  }
   void refuse(const std::string& error);
   void work();
   void process(const LabelledCloud& cloud);
+  void publishObjects(const pcl::PCLHeader& header);
   void publishStages(const pcl::PCLHeader& header, const StreamDiagnostics::StageMilliseconds& stages);
   void warnOfUnknownLabels();
 
   const std::string algorithm_;
+  CloudPool<PanopticCloud> pool_;
   std::unique_ptr<FramePipeline> pipeline_;  ///< the thread's own once it runs
   InstanceBoxes boxes_;
-  InstanceMarkers list_;
+  InstanceMarkers marker_list_;
   std::set<std::uint32_t> warned_labels_;
   StreamDiagnostics diagnostics_;
 
@@ -76,6 +84,7 @@ private:
   std::mutex connect_mutex_;
   bool closed_ = false;
   ros::Publisher output_, markers_, stages_;
+  ObjectOutputs objects_;
   ros::Subscriber input_;
   LatchedInput<LabelledCloud> latched_;
   Mailbox<CloudPtr> mailbox_;

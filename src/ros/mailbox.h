@@ -32,6 +32,13 @@ public:
     return closed_ ? std::nullopt : std::exchange(item_, std::nullopt);
   }
 
+  /// Whether take() would not have to wait.
+  bool hasNext()
+  {
+    const std::lock_guard<std::mutex> lock(mutex_);
+    return item_.has_value() || closed_;
+  }
+
   void close()
   {
     {

@@ -213,7 +213,7 @@ void OrganizerNodelet::process(const CloudPtr& message, const LabelPart& labels)
     if (!frame->message) organize(*message, *frame);
     if (!labelledIsWanted()) return diagnostics_.processed({{"organize", frame->organize_ms}});
     const double label_ms = label(*message, labels, original, *frame);
-    output_.publish(pcl::ros_ptr(ScanOrganizer::takeImage(message->header, frame->scan)));
+    output_.publish(pcl::ros_ptr(organizer_->takeImage(message->header, frame->scan)));
     diagnostics_.processed({{"organize", frame->organize_ms}, {"label", label_ms}});
     frame->message = message;
     frame->stamp = microseconds(message->header);

@@ -30,7 +30,7 @@ ScanOrganizer::ScanOrganizer(const ScanOrganizerConfig& config)
     : config_(config),
       labeller_(config.labeller),
       organizer_(withLabels(config)),
-      original_labeller_(labeller_.classTable())
+      original_labeller_(labeller_.classTable(), config.lasting_ids)
 {
 }
 
@@ -58,8 +58,8 @@ double ScanOrganizer::label(const sensor_msgs::PointCloud2& message, const Label
 
 LabelledCloud::Ptr ScanOrganizer::takeImage(const std_msgs::Header& header, OrganizedScan& scan)
 {
-  LabelledCloud::Ptr cloud(new LabelledCloud);
-  cloud->swap(scan.image.cloud);
+  LabelledCloud::Ptr cloud = pool_.take();
+  cloud->swap(scan.image.cloud);  // the next frame goes into what came back
   scan.image.cloud.width = cloud->width, scan.image.cloud.height = cloud->height;
   pcl_conversions::toPCL(header, cloud->header);
   return cloud;

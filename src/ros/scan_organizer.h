@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/projection/organizer.h"
 #include "lidar_panoptic_clustering/projection/original_cloud.h"
 #include "lidar_panoptic_clustering/projection/original_labeller.h"
@@ -21,6 +22,7 @@ struct ScanOrganizerConfig
   OrganizerConfig organizer;
   ScanLabellerConfig labeller;
   bool float_fields = false;  ///< label and instance of ~output_original as float32, as pcl_ros's filters read them
+  bool lasting_ids = false;   ///< ~panoptic is a tracker's output, see OriginalLabeller
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -28,6 +30,7 @@ struct ScanOrganizerConfig
     OrganizerConfig::visit(self.organizer, visitor);
     ScanLabellerConfig::visit(self.labeller, visitor);
     visitor("float_fields", self.float_fields);
+    visitor("lasting_ids", self.lasting_ids);
   }
 };
 
@@ -48,7 +51,7 @@ public:
                OrganizedFrame& frame);
 
   /// The frame's image itself, to go out by pointer; its size stays behind, for carryBack().
-  static LabelledCloud::Ptr takeImage(const std_msgs::Header& header, OrganizedScan& scan);
+  LabelledCloud::Ptr takeImage(const std_msgs::Header& header, OrganizedScan& scan);
 
   /// The frame's message with the label and the instance of each point, as the clustered image has them.
   sensor_msgs::PointCloud2Ptr carryBack(const OrganizedFrame& frame, const PanopticCloud& panoptic);
@@ -66,6 +69,7 @@ public:
   const std::string& doubt() const { return labeller_.doubt(); }
 
 private:
+  CloudPool<LabelledCloud> pool_;
   ScanOrganizerConfig config_;
   ScanLabeller labeller_;
   Organizer organizer_;

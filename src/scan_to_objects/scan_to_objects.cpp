@@ -67,8 +67,7 @@ void ScanToObjects::require(const char* expected) const
 
 void ScanToObjects::find()
 {
-  pipeline_.segment(scan_.image.cloud);
-  pipeline_.paint(scan_.image.cloud, image_);
+  pipeline_.process(scan_.image.cloud, image_);
   boxes_ = &box_fitter_.fit(pipeline_.things(), pipeline_.instances());
   original_labeller_.carryBack(scan_, image_, label_, instance_);
 }

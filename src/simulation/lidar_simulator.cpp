@@ -53,6 +53,26 @@ double LidarSimulator::time(std::uint64_t frame) const
   return seconds;
 }
 
+std::map<std::uint32_t, Eigen::Vector2d> LidarSimulator::velocities(std::uint64_t frame, double reach_m)
+{
+  constexpr double kHalfStepS = 0.05;
+  const double middle = time(frame);
+  std::map<std::uint32_t, Eigen::Vector2d> before, velocities;
+  const auto places = [&](double time_s)
+  {
+    std::map<std::uint32_t, Eigen::Vector2d> of;  // of each instance's first part, which is rigid
+    street_.collect(time_s, config_.speed_mps * middle, reach_m, solids_);
+    for (const Solid& solid : solids_)
+      if (solid.surface.instance != 0) of.emplace(solid.surface.instance, solid.center.head<2>());
+    return of;
+  };
+  before = places(middle - kHalfStepS);
+  for (const auto& [instance, place] : places(middle + kHalfStepS))
+    if (const auto at = before.find(instance); at != before.end())
+      velocities.emplace(instance, (place - at->second) / (2.0 * kHalfStepS));
+  return velocities;
+}
+
 Pose LidarSimulator::pose(std::uint64_t frame) const
 {
   return street_.course().at(config_.speed_mps * time(frame), kEgoOffset, model_.mount_height_m);

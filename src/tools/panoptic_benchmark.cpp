@@ -1,6 +1,7 @@
 #include "core/aside_file.h"
-#include "tools/support/benchmark_charts.h"
 #include "tools/support/benchmark_figure.h"
+#include "tools/support/benchmark_options.h"
+#include "tools/support/plot_report.h"
 #include "tools/support/program.h"
 #include "tools/support/run_benchmark.h"
 #include "tools/support/run_without_labels.h"
@@ -34,42 +35,30 @@ Options)";
 Options describeOptions()
 {
   Options options = describeProgram(kUsage);
-  options.add_options()("dataset", textValue("DIR"), "folder that holds sequences/SS/{velodyne,labels}");
-  options.add_options()("sequences", textValue("00,05"),
-                        "sequences to run on; otherwise all of the data set with labels");
-  options.add_options()("split", textValue("NAME"), "train, valid (sequence 08) or test instead of --sequences");
-  options.add_options()(
-      "semantics", textValue("DIR"),
-      "folder that holds sequences/SS/predictions, a network's classes; otherwise the ground truth's");
-  options.add_options()("algorithms", textValue("A,B"),
-                        "algorithms to run; otherwise all (supervoxel twice, without and with normals)");
-  options.add_options()("survey", "the settings of Zhao et al. 2021: no class sizes, no refinement");
-  options.add_options()("set", textValues("A.P=V,V ..")->composing(),
-                        "sets parameter P of algorithm A; several values, or several parameters, give a row each");
-  options.add_options()("switches",
-                        "also each row with no step of the refinement, with each alone, and with all but each");
-  options.add_options()("track",
-                        "ids that stay with an object from scan to scan, by the data set's poses; adds LSTQ, S_assoc, "
-                        "S_cls and id switches to each row");
+  for (const BenchmarkOption& one : kBenchmarkOptions) switch (one.kind)
+    {
+      case OptionKind::kFlag:
+        options.add_options()(one.name, one.text);
+        break;
+      case OptionKind::kText:
+        options.add_options()(one.name, textValue(one.value), one.text);
+        break;
+      case OptionKind::kList:
+        options.add_options()(one.name, textValues(one.value)->composing(), one.text);
+        break;
+      case OptionKind::kNumber:
+        options.add_options()(one.name, numberValue(one.number), one.text);
+        break;
+    }
   options.add_options()("jobs", numberValue(1),
                         "threads, each on scans of its own; the quality does not depend on it, but times are best "
                         "taken with one");
   options.add_options()("shard", textValue("I/N")->default_value("1/1"), "every N-th scan, beginning with the I-th");
-  options.add_options()("limit", numberValue(0), "the first N scans of each sequence; 0: all");
-  options.add_options()("output", textValue("DIR"),
-                        "write ROW/sequences/SS/predictions/NNNNNN.label; a later run goes on where this one stops");
   options.add_options()("report", textValue("FILE.json"), "write all figures and what is needed to merge them");
-  options.add_options()(
-      "plot", textValue("DIR"),
-      "write charts, and a figure of each sequence's worst scan; with --labels none figures of the ten worst "
-      "scans, truth beside result, with the objects that were lost or merged marked");
-  options.add_options()("class-table", textValue("FILE"),
-                        "YAML file, or the name of a table that ships with the package (default: semantic_kitti)");
-  options.add_options()(
-      "label-table", textValue("FILE"),
-      "what the class ids of --semantics mean, e.g. semantic_kitti_training (default: the class table)");
-  options.add_options()("columns", numberValue(2048), "of the range image");
-  options.add_options()("keep-going", "skip scans that cannot be used and count them in the report");
+  options.add_options()("plot", textValue("DIR"),
+                        "write charts (by Python's matplotlib), and a figure of each sequence's worst scan; with "
+                        "--labels none figures of the ten worst scans, truth beside result, with the objects that were "
+                        "lost or merged marked");
   options.add_options()("labels", textValue("none", "classes"),
                         "classes, or none: objects by geometry alone, against the true objects of all classes");
   options.add_options()("keep-rings", numberValue(1), "with --labels none: every N-th ring, a sensor of fewer beams");
@@ -92,30 +81,18 @@ void readShard(const std::string& text, BenchmarkSettings& settings)
 
 BenchmarkSettings readSettings(const Given& given)
 {
-  BenchmarkSettings settings;
-  settings.dataset = textOf(given, "dataset");
-  if (settings.dataset.empty()) throw std::invalid_argument("--dataset is missing; see --help");
-  if (isGiven(given, "sequences") && isGiven(given, "split"))
-    throw std::invalid_argument("--sequences and --split exclude each other");
-  if (isGiven(given, "sequences")) settings.sequences = splitAtCommas(textOf(given, "sequences"), "--sequences");
-  if (isGiven(given, "split")) settings.sequences = semanticKittiSplit(textOf(given, "split"));
-  settings.semantics = fs::path(textOf(given, "semantics")).lexically_normal().string();
-  if (isGiven(given, "class-table")) settings.class_table = textOf(given, "class-table");
-  settings.label_table = textOf(given, "label-table");
-  if (!settings.label_table.empty() && settings.semantics.empty())
-    throw std::invalid_argument("--label-table says what the ids of --semantics mean, which is not given");
-  std::vector<std::string> algorithms;
-  if (isGiven(given, "algorithms")) algorithms = splitAtCommas(textOf(given, "algorithms"), "--algorithms");
-  if (isGiven(given, "switches") && isGiven(given, "survey"))
-    throw std::invalid_argument("--switches and --survey exclude each other: the survey has no refinement");
-  settings.rows = makeRows(algorithms, listOf(given, "set"), isGiven(given, "survey"), isGiven(given, "switches"));
-  settings.output = textOf(given, "output");
+  GivenOptions options;
+  for (const BenchmarkOption& one : kBenchmarkOptions)
+  {
+    if (!isGiven(given, one.name)) continue;
+    std::vector<std::string>& values = options[one.name];
+    if (one.kind == OptionKind::kText) values = {textOf(given, one.name)};
+    if (one.kind == OptionKind::kList) values = listOf(given, one.name);
+    if (one.kind == OptionKind::kNumber) values = {std::to_string(given[one.name].as<int>())};
+  }
+  BenchmarkSettings settings = readBenchmarkOptions(options);
   settings.jobs = numberOf(given, "jobs", 1, 1024);
   readShard(textOf(given, "shard"), settings);
-  settings.limit = numberOf(given, "limit", 0, 1 << 30);
-  settings.columns = numberOf(given, "columns", 16, 16384);
-  settings.keep_going = isGiven(given, "keep-going");
-  settings.track = isGiven(given, "track");
   if (settings.track && settings.shards > 1)
     throw std::invalid_argument("--track needs every scan of a sequence, --shard gives every " +
                                 std::to_string(settings.shards) + "th: divide by --sequences instead");
@@ -130,11 +107,10 @@ std::size_t terminalWidth()
 }
 
 /// The table goes first, so that a full disk cannot take the figures along.
-void publish(const BenchmarkReport& report, std::optional<AsideFile>& file, const std::string& plot)
+void publish(const BenchmarkReport& report, std::optional<AsideFile>& file)
 {
   printResult(formatBenchmark(report, terminalWidth()));
   if (file) file->save(report.toJsonText());
-  if (!plot.empty()) drawBenchmarkCharts(report, plot);
 }
 
 std::vector<BenchmarkReport> loadReports(const Given& given, const char* option)
@@ -210,26 +186,27 @@ int run(const Given& given)
   const std::string plot = textOf(given, "plot");
   const bool merging = isGiven(given, "merge");
   const BenchmarkSettings settings = merging ? BenchmarkSettings{} : readSettings(given);
-  std::optional<AsideFile> file;
-  if (isGiven(given, "report")) file.emplace(textOf(given, "report"));
   if (!plot.empty()) fs::create_directories(plot);
+  const std::string path = isGiven(given, "report") || plot.empty() ? textOf(given, "report") : plot + "/report.json";
+  std::optional<AsideFile> file;
+  if (!path.empty()) file.emplace(path);
   if (merging)
   {
-    publish(merge(given), file, plot);
+    publish(merge(given), file);
+    if (!plot.empty()) plotReport(path, plot);
     return EXIT_SUCCESS;
   }
 
   const auto table = std::make_shared<const ClassTable>(ClassTable::load(settings.class_table));
   BenchmarkRun benchmark(settings, table);
   noteInterrupts();
-  publish(benchmark.run(), file, plot);
+  publish(benchmark.run(), file);
   if (interrupted() != 0)
-  {
     std::cerr << "panoptic_benchmark: interrupted; the figures are of the scans done by then\n";
-    return 128 + interrupted();
-  }
-  if (!plot.empty()) drawWorstScans(settings, benchmark, table, plot);
-  return EXIT_SUCCESS;
+  else if (!plot.empty())
+    drawWorstScans(settings, benchmark, table, plot);
+  if (!plot.empty()) plotReport(path, plot);
+  return interrupted() == 0 ? EXIT_SUCCESS : 128 + interrupted();
 }
 }  // namespace
 

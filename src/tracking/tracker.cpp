@@ -202,14 +202,21 @@ void Tracker::learn(std::int64_t stamp_us, const Observations& observations)
     if (track_of_[i] != kNone) vote(track_of_[i], observations.list[i]);
 }
 
+void Tracker::tellMotion(Track& track)
+{
+  track.object.position = track.motion.mean.head<2>();
+  track.object.position_covariance = track.motion.covariance.topLeftCorner<2, 2>();
+  track.object.velocity = track.motion.mean.tail<2>();
+  track.object.velocity_covariance = track.motion.covariance.bottomRightCorner<2, 2>();
+}
+
 void Tracker::follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin)
 {
   constexpr float kForget = 0.3F;  // of what was there and is not seen
   track.points = static_cast<float>(seen.point_count);
   track.motion = expected.motion;
   track.motion.correct(displacementOf(expected.outline, seen.extent), noiseOf(seen));
-  track.object.velocity = track.motion.mean.tail<2>();
-  track.object.velocity_covariance = track.motion.covariance.bottomRightCorner<2, 2>();
+  tellMotion(track);
   const Extent now = shifted(seen.extent, origin.x() - track.motion.mean.x(), origin.y() - track.motion.mean.y());
   for (std::size_t k = 0; k < Extent::kAxes; ++k)
   {
@@ -229,6 +236,16 @@ void Tracker::vote(std::uint32_t track, const Observation& observation)
   tracks_[track].prior_class = winner;
 }
 
+/// Whether a track's votes are clearly against the class that a scan gives it. Where they are even, either may be right,
+/// and to change the scan's own class would gain nothing.
+bool Tracker::isOverruled(std::uint32_t track, ClassIndex seen) const
+{
+  constexpr float kClearly = 2.0F;  // two thirds of the votes
+  if (track == kNone) return false;
+  const float* votes = votes_.data() + track * table_->size();
+  return votes[tracks_[track].object.class_index] >= kClearly * votes[seen];
+}
+
 std::uint32_t Tracker::bear(std::int64_t stamp_us, const Observation& observation, const Eigen::Vector3d& origin)
 {
   Track track;
@@ -240,7 +257,7 @@ std::uint32_t Tracker::bear(std::int64_t stamp_us, const Observation& observatio
   track.prior_class = observation.class_index;
   const double x = origin.x() + static_cast<double>(observation.x), y = origin.y() + static_cast<double>(observation.y);
   track.motion = MotionState::at(x, y, noiseOf(observation), prior_[observation.class_index]);
-  track.object.velocity_covariance = track.motion.covariance.bottomRightCorner<2, 2>();
+  tellMotion(track);
   track.outline = shifted(observation.extent, origin.x() - x, origin.y() - y);
   tracks_.push_back(track);
   votes_.resize(votes_.size() + table_->size(), 0.0F);
@@ -268,7 +285,8 @@ void Tracker::giveIds(std::int64_t stamp_us, const Observations& observations, b
       object.first_seen_us = object.last_seen_us = stamp_us;
       object.scans = 1;
     }
-    if (!config_.vote_over_time) object.class_index = observation.class_index;
+    if (!config_.vote_over_time || !isOverruled(track_of_[i], observation.class_index))
+      object.class_index = observation.class_index;
   }
 }
 }  // namespace lidar_panoptic_clustering

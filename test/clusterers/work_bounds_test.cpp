@@ -24,7 +24,7 @@ std::size_t lookedAt(const ScanLineRunClusterer& clusterer)
 }
 std::size_t lookedAt(const BirdsEyeClusterer& clusterer)
 {
-  return clusterer.cells().pointsLookedAt();
+  return clusterer.pointsLookedAt();
 }
 
 /// Comparisons a point of a build with so many rows.

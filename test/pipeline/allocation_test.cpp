@@ -1,12 +1,16 @@
-// Once it has seen scans of the kind, the way of a scan allocates nothing but a fresh output cloud.
+// Once it has seen scans of the kind, the way of a scan allocates nothing, the output included where it comes from a
+// pool.
 #include "scan_fixture.h"
 
+#include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
+#include "lidar_panoptic_clustering/tracking/cloud_tracker.h"
 
 #include <gtest/gtest.h>
 
 #include <atomic>
 #include <cstddef>
+#include <cstring>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
 #define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 0
@@ -129,6 +133,83 @@ TEST_P(SteadyState, theWholeWayAllocatesOnlyTheOutput)
   before = allocations;
   work(true);
   EXPECT_LE(allocations, before + scans.size()) << "with fresh outputs";
+}
+
+/// The street stands still here, and is left and come back to: tracks are born, hidden and lost all the time.
+TEST(TrackingSteadyState, AllocatesOnlyTheOutput)
+{
+  if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+  LidarSimulator simulator;
+  std::vector<PanopticCloud> scans(4);
+  for (std::size_t k = 0; k < scans.size(); ++k) simulator.scan(20 * k, scans[k]);
+  CloudTracker tracker(kittiTable());
+  PanopticCloud recycled;
+  std::int64_t stamp_us = 0;
+  const auto work = [&](bool fresh)
+  {
+    for (int round = 0; round < 10; ++round)
+      for (const PanopticCloud& scan : scans)
+      {
+        tracker.follow(scan, stamp_us += 100000, Eigen::Isometry3d::Identity());
+        PanopticCloud out;
+        tracker.paint(scan, fresh ? out : recycled);
+        tracker.list(scan);
+      }
+  };
+  work(false);
+  work(false);
+  std::size_t before = allocations;
+  work(false);
+  EXPECT_EQ(allocations, before) << "with an output that is used again";
+  before = allocations;
+  work(true);
+  EXPECT_LE(allocations, before + 10 * scans.size()) << "with fresh outputs";
+}
+
+TEST_P(SteadyState, withAPoolOfOutputsNothingIsAllocated)
+{
+  const auto scans = streetScans();
+  Algorithm made = makeAlgorithm(GetParam());
+  FramePipeline pipeline(kittiTable(), made.pipeline, std::move(made.clusterer));
+  CloudPool<PanopticCloud> pool;
+  PanopticCloud::Ptr reader;  // holds each frame until the next one has come, as a subscriber does
+  const auto work = [&]
+  {
+    for (const auto& scan : scans)
+    {
+      const PanopticCloud::Ptr out = pool.take();
+      pipeline.process(scan, *out);
+      reader = out;
+    }
+  };
+  work();
+  work();
+  const std::size_t before = allocations;
+  work();
+  EXPECT_EQ(allocations, before);
+  EXPECT_EQ(pool.made(), 2U);
+}
+
+TEST_P(SteadyState, oneOrTwoPassesGiveTheSame)
+{
+  const auto scans = streetScans();
+  Algorithm made = makeAlgorithm(GetParam()), again = makeAlgorithm(GetParam());
+  FramePipeline two(kittiTable(), made.pipeline, std::move(made.clusterer));
+  FramePipeline one(kittiTable(), again.pipeline, std::move(again.clusterer));
+  for (const auto& scan : scans)
+  {
+    PanopticCloud expected, found;
+    two.segment(scan);
+    two.paint(scan, expected);
+    one.process(scan, found);
+    ASSERT_EQ(found.points.size(), expected.points.size());
+    EXPECT_EQ(found.width, expected.width);
+    EXPECT_EQ(found.header.stamp, expected.header.stamp);
+    std::size_t different = 0;
+    for (std::size_t k = 0; k < found.points.size(); ++k)
+      different += std::memcmp(&found.points[k], &expected.points[k], sizeof(PanopticPoint)) != 0 ? 1U : 0U;
+    EXPECT_EQ(different, 0U);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Algorithms, SteadyState, testing::Values("depth", "scan_line_run", "birds_eye"),

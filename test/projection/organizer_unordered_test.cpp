@@ -189,6 +189,32 @@ TEST(OrganizerUnordered, HiddenPointsGetTheLabelOfTheirObject)
   EXPECT_GT(2 * hidden, things);
 }
 
+/// A tracker's ids have gaps, and one that it has not given yet is no hidden object's.
+TEST(OrganizerUnordered, HiddenPointsGetTheTrackOfTheirObject)
+{
+  const auto original = simulatedScan("hdl64e");
+  OrganizerConfig config;
+  config.columns = 512;  // three of four points are hidden
+  const auto scan = organized(oneRow(original, shuffled(returnsOf(original)), Rings::kFromTheBottom), config);
+  PanopticCloud clustered = runAlgorithm("birds_eye", scan.image.cloud);
+  std::vector<std::uint32_t> label, instance, tracked_label, track;
+  OriginalLabeller(kittiTable()).carryBack(scan, clustered, label, instance);
+  std::uint32_t largest = 0;
+  for (const auto& point : clustered.points) largest = std::max(largest, point.instance);
+  constexpr std::uint32_t kApart = 10000019;
+  for (auto& point : clustered.points) point.instance *= kApart;
+  OriginalLabeller(kittiTable(), true).carryBack(scan, clustered, tracked_label, track);
+  EXPECT_EQ(tracked_label, label);
+  std::size_t own = 0;
+  for (std::size_t i = 0; i < instance.size(); ++i)
+  {
+    const bool is_own = instance[i] > largest;
+    ASSERT_EQ(track[i], is_own ? OriginalLabeller::kNoTrack + instance[i] - largest : kApart * instance[i]) << i;
+    own += is_own;
+  }
+  RecordProperty("hidden_objects_points", static_cast<int>(own));
+}
+
 TEST(OrganizerUnordered, LayoutsThatCannotBeSayWhy)
 {
   const auto original = simulatedScan("vlp16");

@@ -204,7 +204,7 @@ std::size_t workForWalls(std::uint32_t n, float heading)
   std::vector<std::uint32_t> component;
   clusterer.cluster(scan, component);
   EXPECT_EQ(std::set<std::uint32_t>(component.begin(), component.end()).size(), 2U);
-  return clusterer.cells().pointsLookedAt();
+  return clusterer.pointsLookedAt();
 }
 
 TEST(BirdsEye, workGrowsWithThePointsAndNotWithTheirPairs)

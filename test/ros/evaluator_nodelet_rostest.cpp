@@ -6,6 +6,7 @@
 #include <std_msgs/Float64.h>
 #include <std_srvs/Empty.h>
 
+#include <cmath>
 #include <memory>
 #include <string>
 #include <vector>
@@ -32,7 +33,7 @@ class EvaluatorGraph : public Graph
 protected:
   bool start(const nodelet::M_string& remappings = {})
   {
-    for (const std::string figure : {"pq", "rq", "sq", "pq_things", "pq_things_present"})
+    for (const std::string figure : {"pq", "rq", "sq", "pq_things", "pq_things_present", "lstq", "s_assoc", "s_cls"})
       probes_[figure] = std::make_unique<Probe<std_msgs::Float64>>(name_ + "/" + figure);
     if (!remappings.empty()) return tryLoad(name_, "EvaluatorNodelet", remappings);
     input_ = advertise<PanopticCloud>(name_ + "/input");
@@ -84,6 +85,25 @@ TEST_F(EvaluatorGraph, FiguresOfMatchedScans)
   EXPECT_EQ(report.at("true objects split"), "1");
   EXPECT_EQ(report.at("pq_things_present"), "0.6667");
   EXPECT_EQ(report.at("level"), "0");
+}
+
+/// One car of 60 points in three scans: two under one id, the third under another. All classes are right.
+TEST_F(EvaluatorGraph, TellsWhetherIdsStay)
+{
+  ASSERT_TRUE(start());
+  DiagnosticsProbe diagnostics(name_);
+  for (std::uint64_t stamp = 1; stamp <= 3; ++stamp)
+  {
+    publish(input_, scene(stamp, stamp < 3 ? 5 : 6));
+    publish(truth_, scene(stamp, 9));
+  }
+  EXPECT_EQ(next("lstq"), 1.0);
+  EXPECT_EQ(next("lstq"), 1.0);
+  EXPECT_DOUBLE_EQ(next("lstq"), std::sqrt(5.0 / 9.0));
+  next("s_assoc"), next("s_assoc");
+  EXPECT_DOUBLE_EQ(next("s_assoc"), (120.0 * 120.0 / 180.0 + 60.0 * 60.0 / 180.0) / 180.0);
+  EXPECT_EQ(next("s_cls"), 1.0);
+  EXPECT_EQ(diagnostics.waitFor("scans evaluated", "3").at("id switches"), "1");
 }
 
 TEST_F(EvaluatorGraph, ResetCountsFromZero)

@@ -17,7 +17,7 @@ TEST_F(IdleReasons, ClusterNodeletTellsNobodyListensFromNoInput)
 {
   const std::string name = load("BirdsEyeClusterNodelet");
   DiagnosticsProbe diagnostics(name);
-  const std::string nobody = "nobody listens to " + name + "/output or " + name + "/markers";
+  const std::string nobody = "nobody listens to " + name + "/output, " + name + "/markers or " + name + "/objects";
   EXPECT_EQ(diagnostics.waitFor("message", nobody)["level"], kOk);
 
   Probe<PanopticCloud> output(name + "/output");

@@ -20,19 +20,21 @@ protected:
   /// A list of `count` cars at `now` [s].
   visualization_msgs::MarkerArrayPtr update(std::size_t count, double now)
   {
-    Instances instances;
-    instances.objects.resize(count);
-    for (auto& object : instances.objects) object.class_index = table_.findByName("car");
-    std_msgs::Header header;
-    header.frame_id = "lidar";
-    header.stamp = ros::Time(now - 0.05);
-    InstanceBox box;
-    box.z = -1.0F, box.length = 4.0F, box.width = 2.0F, box.height = 1.5F;
-    return markers_.update(header, table_, instances, std::vector<InstanceBox>(count, box),
-                           std::vector<std::uint32_t>(count, 0xFF8000), ros::Time(now));
+    ObjectArray list;
+    list.header.frame_id = "lidar";
+    list.header.stamp = ros::Time(now - 0.05);
+    for (std::size_t k = 0; k < count; ++k)
+    {
+      Object object;
+      object.instance_id = static_cast<std::uint32_t>(k + 1);
+      object.class_name = "car";
+      object.pose.position.z = -1.0, object.pose.orientation.w = 1.0;
+      object.size.x = 4.0, object.size.y = 2.0, object.size.z = 1.5;
+      list.objects.push_back(object);
+    }
+    return markers_.update(list, std::vector<std::uint32_t>(count, 0xFF8000), ros::Time(now));
   }
 
-  const ClassTable table_ = ClassTable::load("semantic_kitti");
   InstanceMarkers markers_;
 };
 

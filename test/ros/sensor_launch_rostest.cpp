@@ -100,7 +100,7 @@ TEST(SensorLaunch, SaysItselfWhatIsWrong)
   input.publish(toRosMessage(withoutLabels(labelledScene())));
   log.waitFor("/silent_organizer: scans refused: cloud on /silent_points dropped: ", "/silent_echo");
   output.reset();
-  log.waitFor("/silent: nobody listens to /silent/output or /silent/markers", "/silent_echo");
+  log.waitFor("/silent: nobody listens to /silent/output, /silent/markers or /silent/objects", "/silent_echo");
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering

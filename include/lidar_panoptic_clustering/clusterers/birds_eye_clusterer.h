@@ -1,7 +1,8 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/clusterers/link_groups.h"
 #include "lidar_panoptic_clustering/core/clusterer.h"
-#include "lidar_panoptic_clustering/geometry/planar_cells.h"
+#include "lidar_panoptic_clustering/geometry/planar_hierarchy.h"
 
 namespace lidar_panoptic_clustering
 {
@@ -21,7 +22,7 @@ struct BirdsEyeConfig
 /// in bird's-eye view" among linkable points, exact. Height plays no part, so that windows, bumpers and beams far apart
 /// do not part an object; class-wise graphs in bird's-eye view are ALPINE's idea (Sautier et al. 2025).
 ///
-/// Works on a grid (see PlanarCells): linear in the points, n log n where cells are hard to tell apart. Rows and
+/// Works on a grid (see PlanarHierarchy): linear in the points, n log n where cells are hard to tell apart. Rows and
 /// columns are not looked at: the cloud need not be organised.
 class BirdsEyeClusterer : public Clusterer
 {
@@ -34,14 +35,15 @@ public:
 
   void cluster(const ThingScan& scan, std::vector<std::uint32_t>& component) override;
 
-  /// Of the last scan, for tests that bound the work.
-  const PlanarCells& cells() const { return cells_; }
+  /// Points compared in the last scan, for tests that bound the work.
+  std::size_t pointsLookedAt() const { return looked_at_; }
 
 private:
+  float distanceOf(const ThingScan& scan, std::size_t group) const;
+
   BirdsEyeConfig config_;
-  std::vector<std::uint32_t> link_of_class_;  ///< by class index, of the classes that occur
-  std::vector<float> distance_of_link_;
-  PlanarCells cells_;  ///< a layer a link key
-  std::vector<std::uint32_t> component_of_cell_;
+  LinkGroups groups_;
+  PlanarHierarchy cells_;  ///< of the link key in hand
+  std::size_t looked_at_ = 0;
 };
 }  // namespace lidar_panoptic_clustering

@@ -34,7 +34,8 @@ struct ScanLineRunConfig
 ///
 /// Runs that are one object already are not compared again, so that a scan costs little more than its runs' overlaps.
 /// Where that does not help, in lines of many short runs or of runs that lie close but do not join, points are compared
-/// eight at a time with the processor's vectors; at the most points x 2 max_line_gap x max_window_px comparisons.
+/// one by one with those of about their range, but for those known to be of their object, eight at a time with the
+/// processor's vectors; at the most points x 2 max_line_gap x max_window_px comparisons.
 class ScanLineRunClusterer : public Clusterer
 {
 public:
@@ -69,6 +70,14 @@ private:
     float min[3], max[3];  ///< bounding box [m]
   };
 
+  /// Points of a slot whose horizontal range is about the same, by column: [begin, end) of lower_.
+  struct Layer
+  {
+    std::uint32_t begin, end;
+    float min_range, max_range, min_z, max_z;  ///< [m]
+    std::uint32_t same_begin, same_end;        ///< of these it is known that they are of one object
+  };
+
   void sortByLink(const ThingScan& scan);
   void findRuns(const ThingScan& scan);
   void joinOverTheWrap();
@@ -76,9 +85,11 @@ private:
   bool linkRuns(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
   bool anyPairClose(const Run& upper, const Run& lower, int shift);
   void linkPoints(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
-  void linkPoint(const Point& p, std::uint32_t lower_slot, int shift);
-  void linkBlock(const Point& p, const Point* line, std::uint32_t begin, std::uint32_t end, int shift,
-                 std::uint32_t& object);
+  void sortByRange(std::uint32_t slot);
+  void linkPoint(const Point& p, int shift);
+  void linkLayer(const Point& p, int shift, Layer& layer, std::uint32_t& object);
+  bool linkRange(const Point& p, int shift, std::uint32_t from, std::uint32_t to, std::uint32_t& object);
+  bool linkBlock(const Point& p, int shift, std::uint32_t begin, std::uint32_t end, std::uint32_t& object);
 
   ScanLineRunConfig config_;
   float run_distance_, line_distance_;
@@ -93,12 +104,17 @@ private:
   DisjointSets sets_;  ///< of runs
   std::size_t looked_at_ = 0;
 
-  /// The points of a slot, coordinate by coordinate, for linkPoints().
+  /// The points of a slot, layer by layer and coordinate by coordinate, for linkPoints().
   struct Columns
   {
     std::vector<float> x, y, z;
     std::vector<std::uint32_t> object;  ///< of the point's run, as it was when it was looked up last
+    std::vector<int> column;
+    std::vector<std::uint32_t> point;  ///< of points_
+    std::vector<Layer> layers;         ///< by range
+    std::uint32_t slot = 0xFFFFFFFF;   ///< whose points these are
   };
   Columns lower_;
+  std::vector<std::uint32_t> layer_of_point_, layer_begin_;
 };
 }  // namespace lidar_panoptic_clustering

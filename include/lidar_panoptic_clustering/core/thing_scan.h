@@ -97,4 +97,11 @@ bool closesOnItself(const std::string& field_of_view, float column_angle, std::u
 /// No return is NaN, infinity, exactly (0, 0, 0) or a range above max_range_m; is_dense is not looked at.
 /// Throws std::invalid_argument when width * height is not the number of points.
 void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan);
+
+/// The same, and in the same pass fills `out` with the cloud's points in class colours, instance 0: the cloud is read
+/// once for both.
+void selectThings(const LabelledCloud& cloud, const ClassTable& table, const SelectionConfig& config, ThingScan& scan,
+                  PanopticCloud& out);
+/// That pass alone.
+void copyInClassColors(const LabelledCloud& cloud, const ClassTable& table, PanopticCloud& out);
 }  // namespace lidar_panoptic_clustering

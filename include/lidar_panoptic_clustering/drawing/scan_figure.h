@@ -19,6 +19,18 @@ struct Mark
   std::string text;              ///< short; stands beside the ring
 };
 
+/// The way an object has come, drawn in bird's-eye view; it fades to its beginning.
+struct Trail
+{
+  /// A place on the ground [m], sensor frame.
+  struct Place
+  {
+    float x = 0.0F, y = 0.0F;  ///< [m]
+  };
+  std::vector<Place> places;     ///< the oldest first
+  std::uint32_t rgb = 0xFFFFFF;  ///< 0x00RRGGBB
+};
+
 /// One clustered scan of a figure.
 struct ScanPanel
 {
@@ -27,6 +39,7 @@ struct ScanPanel
   std::vector<Mark> marks;               ///< over the points
   std::string caption;                   ///< stands after the counts of returns, thing points and instances
   std::vector<NamedBox> boxes{};         ///< drawn around the objects, from above; text beside them
+  std::vector<Trail> trails{};           ///< under the boxes
 };
 
 /// What the marks of a colour mean, for the legend.

@@ -3,6 +3,8 @@
 #include "lidar_panoptic_clustering/core/language.h"
 
 #include <array>
+#include <cstdint>
+#include <cstring>
 #include <limits>
 
 namespace lidar_panoptic_clustering
@@ -30,9 +32,7 @@ public:
   void add(float x, float y)
   {
     const float along[kAxes] = {x, y, x + y, x - y};
-    // hardly any point is outside: one branch instead of eight, and no loop, which compilers keep below -O3
-    const auto is_outside = [&](int k) { return (along[k] > max_[k]) | (along[k] < min_[k]); };
-    if (is_outside(0) | is_outside(1) | is_outside(2) | is_outside(3)) extend(along, {x, y});
+    if (isOutside(along)) extend(along, {x, y});  // hardly any point is: one branch instead of eight
   }
 
   /// Widens the outline to hold another one.
@@ -83,8 +83,22 @@ public:
   bool isCrossedBy(const PlanarPoint& a, const PlanarPoint& b) const;
 
 private:
+  friend class OrderedFootprint;
   static constexpr int kAxes = 4;  // x, y and the two diagonals
   static constexpr float kFar = std::numeric_limits<float>::infinity();
+
+  bool isOutside(const float (&along)[kAxes]) const
+  {
+    using Floats = float __attribute__((vector_size(16)));
+    Floats at, most, least;
+    std::memcpy(&at, along, sizeof(at));
+    std::memcpy(&most, max_, sizeof(most));
+    std::memcpy(&least, min_, sizeof(least));
+    const auto outside = (at > most) | (at < least);
+    std::uint64_t halves[2];
+    std::memcpy(halves, &outside, sizeof(halves));
+    return (halves[0] | halves[1]) != 0;
+  }
 
   void extend(const float (&along)[kAxes], const PlanarPoint& point)
   {
@@ -102,4 +116,49 @@ private:
   float min_[kAxes] = {kFar, kFar, kFar, kFar};
   std::array<PlanarPoint, 2 * kAxes> point_{};  ///< farthest along each axis, then against it
 };
+
+/// An outline that knows which of its points came first, so that outlines of parts join to just the one that all their
+/// points would have given one after the other: of two equally far the first.
+class OrderedFootprint
+{
+public:
+  /// Widens the outline to hold a point [m]; `order` rises from call to call.
+  void add(float x, float y, std::uint32_t order);
+  /// Widens the outline to hold another one, whose points may have come between its own.
+  void add(const OrderedFootprint& other);
+  /// The outline.
+  const Footprint& outline() const { return outline_; }
+
+private:
+  static constexpr int kAxes = Footprint::kAxes;
+
+  Footprint outline_;
+  std::array<std::uint32_t, 2 * kAxes> order_{};  ///< parallel to Footprint::point_
+};
+
+inline void OrderedFootprint::add(float x, float y, std::uint32_t order)
+{
+  const float along[kAxes] = {x, y, x + y, x - y};
+  if (!outline_.isOutside(along)) return;
+  for (int k = 0; k < kAxes; ++k)
+  {
+    if (along[k] > outline_.max_[k]) order_[k] = order;
+    if (along[k] < outline_.min_[k]) order_[kAxes + k] = order;
+  }
+  outline_.extend(along, {x, y});
+}
+
+inline void OrderedFootprint::add(const OrderedFootprint& other)
+{
+  const auto take = [&](int k) { outline_.point_[k] = other.outline_.point_[k], order_[k] = other.order_[k]; };
+  for (int k = 0; k < kAxes; ++k)
+  {
+    const int against = kAxes + k;
+    float &most = outline_.max_[k], &least = outline_.min_[k];
+    const float their_most = other.outline_.max_[k], their_least = other.outline_.min_[k];
+    if (their_most > most || (their_most == most && other.order_[k] < order_[k])) most = their_most, take(k);
+    if (their_least < least || (their_least == least && other.order_[against] < order_[against]))
+      least = their_least, take(against);
+  }
+}
 }  // namespace lidar_panoptic_clustering

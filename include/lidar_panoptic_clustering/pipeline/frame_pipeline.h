@@ -53,6 +53,10 @@ public:
   /// cloud of another size.
   void paint(const LabelledCloud& in, PanopticCloud& out);
 
+  /// Both, with one pass over the cloud for selection and copy: the same result, faster. The time of the copy counts as
+  /// the selection's. Throws as segment() does; then `out` holds nothing of use.
+  void process(const LabelledCloud& in, PanopticCloud& out);
+
   /// The instances' colours (0xRRGGBB, by id - 1), as paint() uses them; valid until the next segment().
   const std::vector<std::uint32_t>& colors();
 
@@ -72,6 +76,9 @@ public:
   const ClassTable& table() const { return *table_; }
 
 private:
+  void segment(const LabelledCloud& in, PanopticCloud* out);
+  void paintThings(PanopticCloud& out);
+
   std::shared_ptr<const ClassTable> table_;
   SelectionConfig selection_;
   Refinement refinement_;

@@ -30,7 +30,9 @@ class HiddenPointLabeller
 {
 public:
   /// `class_bits`: the bits of a label that are its class; files of SemanticKITTI have instances in the others.
-  explicit HiddenPointLabeller(std::shared_ptr<const ClassTable> table, std::uint32_t class_bits = 0xFFFFU);
+  /// Instances of their own have ids above `own_ids_above` too, where those up to it may come in other scans.
+  explicit HiddenPointLabeller(std::shared_ptr<const ClassTable> table, std::uint32_t class_bits = 0xFFFFU,
+                               std::uint32_t own_ids_above = 0);
 
   /// `labels`: the classes given to PointProjector::project together with `scan`; `projection`: what it returned;
   /// `instance_of_pixel`: what clustering made of its cloud, see pixelInstances().
@@ -38,7 +40,7 @@ public:
   /// thing pixel has one; where owners have none (a minimum size dropped them), their hidden points have none either.
   /// A point without coordinates is near no owner. Throws std::invalid_argument when sizes contradict each other.
   /// Linear in points and pixels, as the windows are bounded.
-  void label(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
+  void label(ScanPoints scan, const std::vector<std::uint32_t>& labels, const Projection& projection,
              const std::vector<std::uint32_t>& instance_of_pixel, std::vector<std::uint32_t>& instance);
 
 private:
@@ -57,13 +59,13 @@ private:
 
   void takeOwners(const std::vector<std::uint32_t>& labels, const Projection& projection,
                   const std::vector<std::uint32_t>& instance_of_pixel, std::vector<std::uint32_t>& instance);
-  std::uint32_t nearestOwner(const std::vector<ScanPoint>& scan, const Projection& projection, std::uint32_t point,
-                             ClassIndex class_index, const Window& window) const;
+  std::uint32_t nearestOwner(ScanPoints scan, const Projection& projection, std::uint32_t point, ClassIndex class_index,
+                             const Window& window) const;
   void addOrphan(std::uint32_t point, ClassIndex class_index, const Projection& projection);
   void numberOrphans(const LabelledCloud& image, std::vector<std::uint32_t>& instance);
 
   std::shared_ptr<const ClassTable> table_;
-  std::uint32_t class_bits_;
+  std::uint32_t class_bits_, own_ids_above_;
   std::vector<ClassIndex> thing_class_;  ///< by class index: itself for things, kUnknownClass for all else
   std::vector<ClassIndex> pixel_class_;  ///< thing class of the pixel's owner
   std::vector<std::uint32_t> hidden_;    ///< thing points that own no pixel

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/geometry/voxel_index.h"
 #include "lidar_panoptic_clustering/projection/hidden_points.h"
 #include "lidar_panoptic_clustering/projection/organized_scan.h"
 
+#include <cstdint>
 #include <memory>
 #include <vector>
 
@@ -14,8 +16,11 @@ namespace lidar_panoptic_clustering
 class OriginalLabeller
 {
 public:
-  /// `table`: the classes that were clustered with.
-  explicit OriginalLabeller(std::shared_ptr<const ClassTable> table);
+  static constexpr std::uint32_t kNoTrack = 0x7FFFFFFF;  ///< ids above it do not last
+
+  /// `table`: the classes that were clustered with. `lasting_ids`: instances are tracks' ids; hidden objects of their
+  /// own, which no pixel shows, are numbered from kNoTrack + 1 then, for a track may have any id below.
+  explicit OriginalLabeller(std::shared_ptr<const ClassTable> table, bool lasting_ids = false);
 
   /// `clustered`: what a FramePipeline painted of scan.image.cloud. Of that cloud only the size is used here, so that
   /// its points may have been moved on.
@@ -32,6 +37,7 @@ private:
   std::shared_ptr<const ClassTable> table_;
   HiddenPointLabeller hidden_points_;
   std::vector<std::uint32_t> instance_of_pixel_;
-  std::vector<std::uint32_t> voted_label_;  ///< by instance: what its outvoted points were given, kNoVote for none
+  VoxelIndex voted_;                        ///< instances with outvoted points, whatever their ids
+  std::vector<std::uint32_t> voted_label_;  ///< by number in voted_: what those points were given
 };
 }  // namespace lidar_panoptic_clustering

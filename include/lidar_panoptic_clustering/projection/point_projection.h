@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/projection/scan_unfolding.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <vector>
@@ -14,6 +15,24 @@ struct ScanPoint
 {
   float x, y, z;    ///< [m], sensor frame
   float remission;  ///< 0..1
+};
+
+/// Points of a scan that lie one after the other: a view that owns none.
+class ScanPoints
+{
+public:
+  ScanPoints(const ScanPoint* points, std::size_t count) : points_(points), count_(count) {}  ///< `count` from `points`
+  ScanPoints(const std::vector<ScanPoint>& points) : ScanPoints(points.data(), points.size()) {}  ///< all of them
+
+  std::size_t size() const { return count_; }                              ///< number of points
+  bool empty() const { return count_ == 0; }                               ///< whether there are none
+  const ScanPoint& operator[](std::size_t i) const { return points_[i]; }  ///< i below size()
+  const ScanPoint* begin() const { return points_; }                       ///< the first
+  const ScanPoint* end() const { return points_ + count_; }                ///< behind the last
+
+private:
+  const ScanPoint* points_;
+  std::size_t count_;
 };
 
 /// The size of the range image.
@@ -77,9 +96,9 @@ public:
   /// of a label that are its class; `shift`: parts of a column, 0 to 1, by which all azimuths move to the right, so
   /// that firings at the border of two columns fall into one of them. All but `rings` of `out` is filled. Linear in
   /// points and pixels; allocates only while buffers grow.
-  void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels,
-               const std::vector<PointDirection>& directions, std::uint32_t rows, std::uint32_t columns,
-               std::uint32_t class_bits, Projection& out, float shift = 0.0F);
+  void project(ScanPoints scan, const std::vector<std::uint32_t>& labels, const std::vector<PointDirection>& directions,
+               std::uint32_t rows, std::uint32_t columns, std::uint32_t class_bits, Projection& out,
+               float shift = 0.0F);
 
   /// Returns of the scan projected last that lie behind others of their pixel, and all of its returns.
   std::size_t hiddenReturns() const { return hidden_.size() - without_return_; }
@@ -89,8 +108,8 @@ public:
   const std::vector<std::uint32_t>& hidden() const { return hidden_; }
 
 private:
-  void locate(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
-              float shift, Projection& out);
+  void locate(ScanPoints scan, const std::vector<PointDirection>& directions, std::uint32_t columns, float shift,
+              Projection& out);
   void listPoints(Projection& out) const;
 
   std::vector<std::uint32_t> hidden_;  ///< points that own no pixel
@@ -99,8 +118,7 @@ private:
 
 /// The direction of each point of a scan whose points come ring after ring (see RingCounter): the row is its ring,
 /// from 0. A point without a return has its predecessor's ring. Returns the number of rings. Linear.
-std::uint32_t unfoldScan(const std::vector<ScanPoint>& scan, const Sweep& sweep,
-                         std::vector<PointDirection>& directions);
+std::uint32_t unfoldScan(ScanPoints scan, const Sweep& sweep, std::vector<PointDirection>& directions);
 
 /// Projects scans whose points come ring after ring (see RingCounter); buffers are kept between scans.
 class PointProjector
@@ -117,7 +135,7 @@ public:
   /// `labels`: the points' classes, in the low 16 bits as in SemanticKITTI's files; empty for none (0).
   /// Throws std::invalid_argument when there are labels, but not as many as points.
   /// Linear in points and pixels; allocates only while buffers grow.
-  void project(const std::vector<ScanPoint>& scan, const std::vector<std::uint32_t>& labels, Projection& out);
+  void project(ScanPoints scan, const std::vector<std::uint32_t>& labels, Projection& out);
 
 private:
   std::uint32_t rows_, columns_;

@@ -2,7 +2,7 @@
 
 #include "lidar_panoptic_clustering/core/thing_scan.h"
 #include "lidar_panoptic_clustering/geometry/footprint.h"
-#include "lidar_panoptic_clustering/geometry/planar_cells.h"
+#include "lidar_panoptic_clustering/refinement/linkage_tree.h"
 
 #include <cstdint>
 #include <vector>
@@ -13,33 +13,43 @@ namespace lidar_panoptic_clustering
 ///
 /// The link distance is lowered by tenths of `reach`, from nine down to two, until two or more sizeable parts are left:
 /// a tenth of the object's points each, and at least ten. What is not in one of them joins the nearest of them
-/// (outline to outline).
+/// (outline to outline). A part can be parted again: a part is a set of leaves of the object's LinkageTree, which is
+/// built once.
 ///
-/// Nine passes over the points at the most; keeps its memory.
+/// The points are looked at once, whatever the number of parts; each parting is linear in its leaves, but for those
+/// that belong to no sizeable part, times the parts. Keeps its memory.
 class BoxSplitter
 {
 public:
-  static constexpr int kCoarsest = 9;  ///< tenths of the reach to begin with
+  static constexpr int kCoarsest = LinkageTree::kCoarsest;  ///< tenths of the reach to begin with
 
-  /// `things`: the object's `count` points, indices into the scan. `tenths`: where to begin, at most kCoarsest; becomes
-  /// the distance found, where the parts hang together, so that each of them need only be looked at below it. Returns
-  /// the number of parts, 1 where the object hangs together; else `part` holds each thing's part, 0..n-1, parallel to
-  /// `things`.
-  std::uint32_t split(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach, int& tenths,
-                      std::vector<std::uint32_t>& part);
+  /// `things`: the object's `count` points, indices into the scan, in rising order. Returns whether it can be parted at
+  /// all; if not, nothing else may be called.
+  bool begin(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach);
+
+  /// The object's leaves; a set of them is always given in rising order.
+  const LinkageTree& leaves() const { return tree_; }
+  /// A leaf's outline.
+  const OrderedFootprint& outline(std::uint32_t leaf) const { return outline_[leaf]; }
+
+  /// Parts what `count` leaves make together. `tenths`: where to begin, at most kCoarsest; becomes the distance found,
+  /// where the parts hang together, so that each of them need only be looked at below it. Returns the number of parts,
+  /// 1 where it hangs together; else `part` holds each leaf's part, 0..n-1, parallel to `leaves`. Parts are numbered by
+  /// their components' first points.
+  std::uint32_t split(const std::uint32_t* leaves, std::uint32_t count, int& tenths, std::vector<std::uint32_t>& part);
 
 private:
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
-  void link(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float distance);
-  std::uint32_t countSizeable(std::uint32_t fewest);
-  void joinRest(const ThingScan& scan, const std::uint32_t* things, std::uint32_t parts);
+  bool isOneAtTheFinest(const std::uint32_t* leaves, std::uint32_t count, std::uint32_t& points) const;
+  std::uint32_t countSizeable(const std::uint32_t* leaves, std::uint32_t count, int tenths, std::uint32_t fewest);
+  void joinRest(const std::uint32_t* leaves, std::uint32_t count, int tenths);
+  std::uint32_t nearestPart(const Footprint& outline) const;
 
-  PlanarCells cells_;
-  std::vector<float> distance_;  ///< the one link distance
-  std::vector<std::uint32_t> component_of_cell_;
-  std::vector<std::uint32_t> size_of_, part_of_;  ///< by component
-  std::vector<Footprint> outline_;                ///< by component
+  LinkageTree tree_;
+  std::vector<OrderedFootprint> outline_;         ///< by leaf
+  std::vector<std::uint32_t> size_of_, part_of_;  ///< by component's first leaf
+  std::vector<OrderedFootprint> whole_;           ///< by component's first leaf: its outline
   std::vector<std::uint32_t> sizeable_;           ///< by part: its component
 };
 }  // namespace lidar_panoptic_clustering

@@ -3,7 +3,7 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/core/thing_scan.h"
 #include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
-#include "lidar_panoptic_clustering/geometry/planar_cells.h"
+#include "lidar_panoptic_clustering/geometry/planar_hierarchy.h"
 #include "lidar_panoptic_clustering/refinement/part_merging.h"
 
 #include <cstdint>
@@ -34,14 +34,22 @@ private:
     bool contains(float x, float y) const { return x >= min_x && x <= max_x && y >= min_y && y <= max_y; }
   };
 
-  bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
-  void uniteComponents(const std::vector<std::uint32_t>& object_of_thing);
+  struct Start
+  {
+    float min_x;
+    std::uint32_t object;
+  };
 
-  std::vector<std::uint32_t> order_;  ///< objects by least x
-  std::vector<Reach> reach_;          ///< by object
-  PlanarCells cells_;                 ///< of all objects, a layer a group
-  std::vector<float> distance_of_group_;
-  std::vector<std::uint32_t> component_of_cell_;
+  bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
+  void sortByGroup(const ThingScan& scan, const ClassTable& table, const std::vector<RefinedObject>& objects,
+                   const std::vector<std::uint32_t>& object_of_thing);
+  void uniteClose(const ThingScan& scan, const std::vector<std::uint32_t>& things, float distance,
+                  const std::vector<std::uint32_t>& object_of_thing);
+
+  std::vector<Start> by_min_x_;                              ///< objects
+  std::vector<Reach> reach_;                                 ///< by object
+  std::vector<std::vector<std::uint32_t>> things_of_group_;  ///< within reach of another object
+  PlanarHierarchy cells_;                                    ///< of a group's
   DisjointSets sets_;
 };
 }  // namespace lidar_panoptic_clustering

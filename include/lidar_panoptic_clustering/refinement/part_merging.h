@@ -53,6 +53,11 @@ private:
     float squared_gap;
     std::uint32_t a, b;
   };
+  struct Start
+  {
+    float min_x;
+    std::uint32_t object;
+  };
   struct Entry
   {
     std::uint32_t object, next;
@@ -72,6 +77,7 @@ private:
   std::vector<Entry> entries_;
   std::vector<std::uint32_t> seen_;  ///< by object: the last one it was compared with
   std::vector<Pair> pairs_;
+  std::vector<Start> by_min_x_;
   std::vector<std::uint32_t> order_;
   std::vector<RefinedObject> sorted_;  ///< by place; a whole's first has its outline
   DisjointSets sets_;

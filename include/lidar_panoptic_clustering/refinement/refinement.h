@@ -46,29 +46,39 @@ public:
   void refine(const ThingScan& scan, const std::vector<std::uint32_t>& component, Instances& instances);
 
 private:
-  /// An object to be split.
+  /// An object to be split, or a part of it.
   struct Range
   {
-    std::uint32_t begin, end;             ///< of things_
+    std::uint32_t object;
+    std::uint32_t begin, end;             ///< of things_, or of leaves_
     int tenths = BoxSplitter::kCoarsest;  ///< the distance to begin with
   };
 
   void gather(const ThingScan& scan, const std::vector<std::uint32_t>& component);
-  static void addRun(const ThingScan& scan, std::uint32_t begin, std::uint32_t end, RefinedObject& object,
-                     std::uint32_t* votes);
-  void elect(std::uint32_t object, std::uint32_t class_count);
+  void findClasses(const ThingScan& scan);
+  void addRun(const ThingScan& scan, std::uint32_t begin, std::uint32_t end, RefinedObject& object,
+              std::uint32_t* votes) const;
+  std::uint32_t* votesOf(std::uint32_t object) { return votes_.data() + object * classes_.size(); }
+  void elect(std::uint32_t object);
   void bridge(const ThingScan& scan);
-  void moveInto(std::uint32_t from, std::uint32_t to, bool is_first, std::uint32_t class_count);
+  void moveInto(std::uint32_t from, std::uint32_t to, bool is_first);
   bool isTooBig(const RefinedObject& object) const;
   void splitTooBig(const ThingScan& scan);
   void split(const ThingScan& scan, Range range);
+  void countLeafVotes(const ThingScan& scan, Range range);
+  void splitPart(Range part);
+  void fillFromLeaves(std::uint32_t object, const std::uint32_t* leaves, std::uint32_t count);
+  void assignThings(const ThingScan& scan, Range range);
+  void openAgain(Range range);
   void number(const ThingScan& scan, Instances& instances);
   std::uint32_t numbered(const RefinedObject& object, Instances& instances) const;
 
   std::shared_ptr<const ClassTable> table_;
   RefinementConfig config_;
   std::vector<RefinedObject> objects_;
-  std::vector<std::uint32_t> votes_;  ///< object x class
+  std::vector<ClassIndex> classes_;             ///< that occur in the scan
+  std::vector<std::uint32_t> column_of_class_;  ///< place in classes_, by class
+  std::vector<std::uint32_t> votes_;            ///< object x classes_
   std::vector<std::uint32_t> object_of_thing_, object_of_component_;
   ClassBridging bridging_;
   BoxSplitter splitter_;
@@ -76,7 +86,13 @@ private:
   std::vector<std::uint32_t> whole_of_, id_of_;  ///< by object
 
   std::vector<std::uint32_t> things_;  ///< of the objects too big for their class, object by object
-  std::vector<Range> open_;            ///< what is still to be split
-  std::vector<std::uint32_t> slot_of_, part_of_, sorted_;
+  std::vector<Range> open_;            ///< objects that are still to be split
+  std::vector<std::uint32_t> slot_of_;
+  // of the object in hand
+  std::vector<Range> parts_;           ///< that are still to be split
+  std::vector<Range> other_reach_;     ///< parts whose class has another link distance: to be taken as objects
+  std::vector<std::uint32_t> leaves_;  ///< part by part
+  std::vector<std::uint32_t> part_of_leaf_, sorted_, object_of_leaf_;
+  std::vector<std::uint32_t> leaf_votes_;  ///< leaf x classes_
 };
 }  // namespace lidar_panoptic_clustering

@@ -7,7 +7,9 @@
 #include "lidar_panoptic_clustering/simulation/ray_caster.h"
 #include "lidar_panoptic_clustering/simulation/street.h"
 
+#include <Eigen/Core>
 #include <cstdint>
+#include <map>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -56,6 +58,9 @@ public:
 
   /// The sensor in the world; throws as scan does.
   simulation::Pose pose(std::uint64_t frame) const;
+
+  /// The true velocity in the world of each instance within `reach_m` [m/s], by id; throws as scan does.
+  std::map<std::uint32_t, Eigen::Vector2d> velocities(std::uint64_t frame, double reach_m);
 
   /// Of the sensor.
   const SensorModel& model() const { return model_; }

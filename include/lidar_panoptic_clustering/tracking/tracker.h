@@ -17,7 +17,7 @@ namespace lidar_panoptic_clustering
 struct TrackerConfig
 {
   double max_missed_s = 1.5;   ///< an object that is not seen for longer is a new one when it comes again
-  bool vote_over_time = true;  ///< an object has the class it had most often, its points too
+  bool vote_over_time = true;  ///< an object has the class it had most often, where that is clear; its points too
 
   template <class Self, class Visitor>
   static void visit(Self& self, Visitor&& visitor)
@@ -31,9 +31,11 @@ struct TrackerConfig
 struct TrackedObject
 {
   std::uint32_t track = 0;                                        ///< its id, from 1; never given twice by one tracker
-  ClassIndex class_index = kUnknownClass;                         ///< voted over its life
+  ClassIndex class_index = kUnknownClass;                         ///< voted over its life, see TrackerConfig
   std::int64_t first_seen_us = 0, last_seen_us = 0;               ///< stamps
   std::uint32_t scans = 0;                                        ///< in which it was seen
+  Eigen::Vector2d position = Eigen::Vector2d::Zero();             ///< of a point that moves with it, fixed frame [m]
+  Eigen::Matrix2d position_covariance = Eigen::Matrix2d::Zero();  ///< of the position [m^2]
   Eigen::Vector2d velocity = Eigen::Vector2d::Zero();             ///< over ground, in the axes of the fixed frame [m/s]
   Eigen::Matrix2d velocity_covariance = Eigen::Matrix2d::Zero();  ///< of the velocity [m^2/s^2]
 };
@@ -119,8 +121,10 @@ private:
   void joinParts(const Observations& observations);
   bool isPartOf(const Observation& observation, std::uint32_t track) const;
   void learn(std::int64_t stamp_us, const Observations& observations);
+  static void tellMotion(Track& track);
   void follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin);
   void vote(std::uint32_t track, const Observation& observation);
+  bool isOverruled(std::uint32_t track, ClassIndex seen) const;
   void dropLost(std::int64_t stamp_us);
   void giveIds(std::int64_t stamp_us, const Observations& observations, bool is_new);
   std::uint32_t bear(std::int64_t stamp_us, const Observation& observation, const Eigen::Vector3d& origin);

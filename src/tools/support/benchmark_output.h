@@ -33,7 +33,8 @@ struct OutputError : std::runtime_error
 /// The predictions of one row: OUTPUT/ROW/sequences/SS/predictions/NNNNNN.label, which as a folder is what the
 /// leaderboard takes (spaces in the row's name are underscores). Beside it lie OUTPUT/ROW.settings, what they were made
 /// with, OUTPUT/ROW.scans.csv, what of (a fingerprint a scan), and OUTPUT/ROW.times.csv. A run with the same settings
-/// goes on where the last one stopped; one with others, or with another scan of the same name, is refused.
+/// goes on where the last one stopped; one with others, or with another scan of the same name, is refused. Without
+/// folders a row it is OUTPUT/sequences and OUTPUT/predictions.settings and so on.
 ///
 /// May be used from several threads, and by several shards at once.
 class RowOutput
@@ -41,7 +42,10 @@ class RowOutput
 public:
   /// Throws std::runtime_error when the folder cannot be written, or holds predictions of other settings.
   RowOutput(const BenchmarkSettings& settings, const RowSettings& row, const ClassTable& table)
-      : base_(madeBase(settings, row)), scans_(base_ + ".scans.csv", 1), times_(base_ + ".times.csv", 4)
+      : base_(madeBase(settings, row)),
+        records_(settings.row_folders ? base_ : (std::filesystem::path(base_) / "predictions").string()),
+        scans_(records_ + ".scans.csv", 1),
+        times_(records_ + ".times.csv", 4)
   {
     agreeOnSettings(describe(settings, row, table));
   }
@@ -90,7 +94,8 @@ private:
   {
     std::string name = row.name;
     std::replace(name.begin(), name.end(), ' ', '_');
-    const std::string base = (std::filesystem::path(settings.output) / name).string();
+    const std::filesystem::path output = settings.output;
+    const std::string base = (settings.row_folders ? output / name : output).string();
     std::error_code failed;
     std::filesystem::create_directories(base, failed);
     if (failed) throw OutputError("cannot write " + base + ": " + failed.message());
@@ -125,7 +130,7 @@ private:
   void agreeOnSettings(const std::string& wanted) const
   {
     constexpr std::uint64_t kMaxSettings = 1U << 20U;
-    const std::string path = base_ + ".settings";
+    const std::string path = records_ + ".settings";
     // of several processes that find none the first to save has its way
     if (!std::filesystem::exists(path) && AsideFile(path).saveIfNone(wanted)) return;
     std::istringstream found(readTextFile(path, kMaxSettings)), expected(wanted);
@@ -156,7 +161,7 @@ private:
     return {scan, static_cast<std::uint32_t>(*points), static_cast<std::uint32_t>(*things), *cluster, *pipeline};
   }
 
-  std::string base_;
+  std::string base_, records_;  ///< folder, and how the names begin of what is written beside the predictions
   ScanLog scans_, times_;
 };
 }  // namespace lidar_panoptic_clustering

@@ -19,7 +19,7 @@ namespace lidar_panoptic_clustering
 struct BenchmarkScan
 {
   std::vector<ScanPoint> points;
-  std::vector<std::uint32_t> truth;    ///< ground truth as in its file; empty where there is none
+  std::vector<std::uint32_t> truth;    ///< ground truth as in its file; empty where there is none, or none is needed
   std::vector<std::uint32_t> classes;  ///< the classes to cluster by, in the low 16 bits
 };
 
@@ -35,7 +35,9 @@ public:
         semantics_(settings.semantics),
         label_table_(settings.label_table),
         table_(std::move(table)),
-        keep_going_(settings.keep_going)
+        keep_going_(settings.keep_going),
+        needs_truth_(settings.evaluate || settings.semantics.empty()),
+        quiet_(settings.quiet)
   {
     for (const std::string& name : sequenceNames(settings)) addSequence(name, settings.limit);
     std::vector<Place> share;
@@ -67,7 +69,7 @@ public:
     const std::size_t number = places_[i].number;
     sequence.readScan(number, scan.points);
     scan.truth.clear();
-    if (sequence.hasLabels())
+    if (needs_truth_ && sequence.hasLabels())
     {
       sequence.readLabels(number, scan.points.size(), scan.truth);
       requireKnownClasses(scan.truth, *table_, truthFile(i));
@@ -108,7 +110,7 @@ private:
     {
       requireScans(sequence);
       predicted_.emplace_back(sequence, table_, label_table_);
-      if (!predicted_.back().doubt().empty())
+      if (!quiet_ && !predicted_.back().doubt().empty())
         std::fprintf(stderr, "sequence %s: %s\n", name.c_str(), predicted_.back().doubt().c_str());
     }
     const std::size_t count = limit == 0 ? sequence.size() : std::min(sequence.size(), static_cast<std::size_t>(limit));
@@ -138,7 +140,7 @@ private:
 
   std::string dataset_, semantics_, label_table_;
   std::shared_ptr<const ClassTable> table_;
-  bool keep_going_;
+  bool keep_going_, needs_truth_, quiet_;
   std::vector<SemanticKittiSequence> sequences_;
   std::vector<PredictedClasses> predicted_;  ///< by sequence, where there are predictions
   std::vector<Place> places_;

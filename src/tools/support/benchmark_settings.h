@@ -46,6 +46,9 @@ struct BenchmarkSettings
   int columns = 2048;         ///< of the range image
   bool keep_going = false;    ///< skip and count scans that cannot be used
   bool track = false;         ///< ids that stay with an object from scan to scan
+  bool evaluate = true;       ///< by the ground truth, where there is one
+  bool row_folders = true;    ///< a folder a row in `output`; else there is one row, and `output` is its folder
+  bool quiet = false;         ///< nothing is printed on the way
 };
 
 /// `--set algorithm.parameter=value,value`

@@ -15,7 +15,7 @@
 namespace lidar_panoptic_clustering
 {
 /// Progress of a long run on stderr: on a terminal one bar with rate and time left, else a plain line every ten
-/// percent. May be stepped from several threads.
+/// percent. May be stepped from several threads. Without a file to print to it prints nothing.
 class Progress
 {
 public:
@@ -31,6 +31,7 @@ public:
   {
     const std::lock_guard<std::mutex> lock(mutex_);
     ++done_;
+    if (out_ == nullptr) return;
     const auto now = Clock::now();
     if (terminal_)
     {
@@ -48,6 +49,7 @@ public:
   void note(const std::string& line)
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (out_ == nullptr) return;
     clearBar();
     std::fprintf(out_, "%s\n", printable(line).c_str());
   }
@@ -56,6 +58,7 @@ public:
   void finish()
   {
     const std::lock_guard<std::mutex> lock(mutex_);
+    if (out_ == nullptr) return;
     clearBar();
     std::fflush(out_);
   }

@@ -63,7 +63,30 @@ public:
     return report_;
   }
 
+  /// The scans [begin, end) alone, in this thread, whole sequences where objects are tracked; buffers last from part to
+  /// part. The parts' reports add up to the whole's, without what scans().skipped() names. Throws as run() does, and
+  /// nothing but that where no scan could be used.
+  BenchmarkReport runPart(std::size_t begin, std::size_t end)
+  {
+    if (!part_) part_ = std::make_unique<Worker>(settings_, table_, emptyReport());
+    part_->startReport(emptyReport());
+    Progress silent("", end - begin, false, nullptr);
+    failure_.reset();
+    stop_ = false;
+    workOn(begin, end, *part_, silent);
+    if (failure_) throw std::runtime_error(failure_->reason);
+    part_->countSwitches();
+    for (std::size_t row = 0; row < part_->report.rows.size(); ++row)
+      for (std::size_t i = begin; i < end; ++i)
+        if (!times_[row][i].scan.empty())
+          part_->report.rows[row].times.push_back(std::exchange(times_[row][i], FrameTime{}));
+    return std::move(part_->report);
+  }
+
   const BenchmarkScans& scans() const { return scans_; }
+  /// Scans used so far, and how many of these needed no clustering: a run before wrote all their predictions.
+  std::size_t used() const { return used_; }
+  std::size_t resumed() const { return resumed_; }
   /// The scan of each sequence with the most true objects split or merged, over all rows; none where there is no such
   /// object.
   std::vector<std::size_t> worstScans() const
@@ -92,6 +115,17 @@ private:
     {
       for (std::size_t row = 0; row < settings.rows.size() && settings.track; ++row)
         trackers.emplace_back(table), switches.emplace_back();
+    }
+
+    void startReport(BenchmarkReport empty)
+    {
+      report = std::move(empty);
+      for (IdSwitches& one : switches) one = IdSwitches();
+    }
+    void countSwitches()
+    {
+      for (std::size_t row = 0; row < switches.size(); ++row)
+        report.rows[row].evaluation.id_switches = switches[row].count();
     }
 
     ScanClusterer clusterer;
@@ -123,8 +157,7 @@ private:
       const std::size_t task = next_++;
       if (task + 1 >= tasks_.size() || !workOn(tasks_[task], tasks_[task + 1], worker, progress)) break;
     }
-    for (std::size_t row = 0; row < worker.switches.size(); ++row)
-      worker.report.rows[row].evaluation.id_switches = worker.switches[row].count();
+    worker.countSwitches();
     const std::lock_guard<std::mutex> lock(mutex_);
     report_ += worker.report;
   }
@@ -198,8 +231,9 @@ private:
       for (const std::size_t row : open)
         outputs_[row]->save(scans_.sequence(i), scans_.scanName(i), made_of, worker.labels[row], times[row]);
     for (std::size_t row = 0; row < settings_.rows.size(); ++row) times_[row][i] = std::move(times[row]);
-    if (!worker.scan.truth.empty()) evaluate(i, worker);
+    if (settings_.evaluate && !worker.scan.truth.empty()) evaluate(i, worker);
     ++used_;
+    if (open.empty()) ++resumed_;
   }
 
   /// A scan whose ids do not fit is no reason to skip it: none after it would.
@@ -247,10 +281,11 @@ private:
   std::vector<std::uint32_t> wrong_;                 ///< true objects split or merged, by scan
 
   std::vector<std::size_t> tasks_;  ///< where the scans begin that are done in one go, and the end
-  std::atomic<std::size_t> next_{0}, used_{0};
+  std::atomic<std::size_t> next_{0}, used_{0}, resumed_{0};
   std::atomic<bool> stop_{false};
   std::mutex mutex_;
   BenchmarkReport report_;
   std::optional<Failure> failure_;
+  std::unique_ptr<Worker> part_;  ///< of runPart()
 };
 }  // namespace lidar_panoptic_clustering
