@@ -82,5 +82,18 @@ TEST_P(OrganizerTilt, GivesTheRightRowsOrRefuses)
 
 INSTANTIATE_TEST_SUITE_P(All, OrganizerTilt, testing::ValuesIn(SensorModel::shippedNames()),
                          [](const auto& test) { return test.param; });
+
+TEST(OrganizerTilts, AreNamed)
+{
+  SyntheticLidar lidar{{15, 13, 11, 9, 7, 5, 3, 1, -1, -3, -5, -7, -9, -11, -13, -15}};
+  lidar.firings = 170, lidar.field_of_view_deg = 120.0, lidar.start_deg = 137.0;
+  SyntheticScan scan = scanOf(lidar);
+  tilt(scan, 30.0, Eigen::Vector3d(1, 0, 0));
+  OrganizedScan image;
+  Organizer organizer(withoutLabels());
+  EXPECT_EQ(errorOf([&] { organizer.organize(cloudOf(scan, kRingAfterRing).message.view(), image); }),
+            "expected a cloud in the sensor's own frame or one that is little tilted against it, found the sensor's "
+            "axis 30 degrees from the cloud's z: publish the cloud in the sensor's frame");
+}
 }  // namespace
 }  // namespace lidar_panoptic_clustering
