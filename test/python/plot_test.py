@@ -106,7 +106,7 @@ def test_png_and_svg(report, tmp_path):
 
 def test_texts_do_not_overlap_the_plot(report, tmp_path):
     """However many rows: names below, legend above, values inside the page."""
-    for count in (1, 2, 12, 40):
+    for count in (2, 24):
         names = [f'depth, all but bridge {i}' for i in range(count)]
         report['rows'] = names
         report['quality']['rows'] = {name: quality_of(1.0) for name in names}
