@@ -225,7 +225,8 @@ TEST(PointProjection, RefusesWhatDoesNotFit)
 {
   Projection out;
   PointProjector projector{ProjectionConfig{}};
-  EXPECT_THROW(projector.project({polar(1, 1)}, {1, 2}, out), std::invalid_argument);
+  const std::vector<ScanPoint> one = {polar(1, 1)};
+  EXPECT_THROW(projector.project(one, {1, 2}, out), std::invalid_argument);
   EXPECT_THROW(PointProjector(config(0, 2048)), std::invalid_argument);
   EXPECT_THROW(PointProjector(config(64, 8)), std::invalid_argument);
 }
