@@ -289,7 +289,7 @@ TEST_F(NoLabels, ObjectsComeFromTheGeometry)
   EXPECT_GT(cars_as_objects, cars * 7 / 10);
 }
 
-TEST_F(NoLabels, TheGroundIsReportedAndThatThereIsNone)
+TEST_F(NoLabels, TheGroundIsReported)
 {
   ros::param::set(name_ + "/height_as_intensity", true);
   start("none");
@@ -306,12 +306,16 @@ TEST_F(NoLabels, TheGroundIsReportedAndThatThereIsNone)
   EXPECT_EQ(report["sensor"].substr(0, 3), "1.7") << report["sensor"];
   EXPECT_NE(report["ground"].find(" y + -1.7"), std::string::npos) << report["ground"];
   EXPECT_NE(report["ground"].find("sloped by 0."), std::string::npos) << report["ground"];
+}
 
-  LabelledCloud head_down = truth;
+TEST_F(NoLabels, AScanWithoutGroundIsSaid)
+{
+  start("none");
+  LabelledCloud head_down = simulatedScan("hdl64e");
   for (LabelledPoint& point : head_down.points) point.y = -point.y, point.z = -point.z;
   input_.publish(toRosMessage(withoutLabels(head_down)));
   ASSERT_TRUE(output_->next());
-  report = diagnostics_->waitFor("scans without ground", "1");
+  auto report = diagnostics_->waitFor("scans without ground", "1");
   EXPECT_NE(report["message"].find("no ground in the last scan"), std::string::npos) << report["message"];
 }
 
