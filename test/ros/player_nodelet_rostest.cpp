@@ -69,6 +69,25 @@ TEST_F(Player, ClassesCanBeAPredictionWhileGroundTruthStays)
   EXPECT_EQ(returnsIn(*truth), expectedReturns(0, kMovingCar));
 }
 
+TEST_F(Player, TheLabelTableSaysWhatPredictedIdsMean)
+{
+  std::vector<std::uint32_t> training(kScanPoints, 9);
+  std::fill(training.begin(), training.begin() + 8, 6);
+  for (int scan = 0; scan < 3; ++scan) writeFile(file("predictions", scan, ".label"), training);
+  ros::param::set(name_ + "/semantics", root_.string());
+  expectRefused("'semantic_kitti_training'");
+  ros::param::set(name_ + "/label_table", "semantic_kitti_training");
+  Probe<rosgraph_msgs::Log> log("/rosout");
+  EXPECT_TRUE(eventually([&log] { return log.subscriber().getNumPublishers() > 0; }));
+  ASSERT_TRUE(start());
+  Probe<LabelledCloud> output(name_ + "/output");
+  const auto cloud = output.next();
+  ASSERT_TRUE(cloud);
+  EXPECT_EQ(returnsIn(*cloud), expectedReturns(0, kPerson));
+  while (const auto message = log.takeIfThere())
+    EXPECT_EQ(message->msg.find("unknown parameter"), std::string::npos) << message->msg;
+}
+
 TEST_F(Player, LoopsUntilUnloaded)
 {
   ros::param::set(name_ + "/loop", true);

@@ -176,6 +176,23 @@ TEST_F(SequenceBag, GroundTruthHasInstancesWhateverTheSemantics)
   for (const auto& p : cloud.points) EXPECT_EQ(p.instance, p.label == kMovingCar ? 5U : 0U);
 }
 
+TEST_F(SequenceBag, TheLabelTableSaysWhatPredictedIdsMean)
+{
+  std::vector<std::uint32_t> training(kScanPoints, 9);
+  std::fill(training.begin(), training.begin() + 8, 6);
+  for (int scan = 0; scan < 3; ++scan) writeFile(file("predictions", scan, ".label"), training);
+  config_.semantics = root_.string();
+  EXPECT_NE(errorOf().find("'semantic_kitti_training'"), std::string::npos) << errorOf();
+  expectNothingWritten();
+  config_.label_table = "semantic_kitti_training";
+  writeSequenceBag(config_, goOn);
+  EXPECT_EQ(returnsIn(*messages<CloudMessage>("/points").at(1)), expectedReturns(1, kPerson));
+  fs::remove(config_.output);
+  config_.semantics.clear();
+  EXPECT_EQ(errorOf(), "label table: expected predictions whose ids it says, found none");
+  expectNothingWritten();
+}
+
 TEST_F(SequenceBag, WithoutLabelsThereIsNoLabelFieldAndNoTruth)
 {
   fs::remove_all(sequence() / "labels");

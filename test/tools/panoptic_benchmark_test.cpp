@@ -121,6 +121,32 @@ TEST_F(PanopticBenchmark, PredictionFilesHoldCanonicalClassesAndInstances)
   EXPECT_EQ(labels[120] >> 16U, 0U);
 }
 
+TEST_F(PanopticBenchmark, TheLabelTableSaysWhatPredictedIdsMean)
+{
+  ASSERT_EQ(benchmark("--semantics net --algorithms euclidean --output out"), 0) << err();
+  fs::rename(folder_ / "out", folder_ / "raw");
+  for (const std::string sequence : {"03", "08"})
+    for (std::uint32_t scan = 0; scan < 3; ++scan)
+    {
+      Labels labels = readLabels(semantics(sequence, scan));
+      for (std::uint32_t& label : labels) label = label == kRoad ? 9 : label == kCar ? 1 : 20;
+      write(semantics(sequence, scan), labels);
+    }
+  expectFailure("--semantics net",
+                {"000000.label: expected class ids of the table 'semantic_kitti'", "'semantic_kitti_training'"});
+  expectFailure("--semantics net --label-table nuscenes_training_less_one", {"'nuscenes_training_less_one'", "20 ("});
+  expectFailure("--semantics net --label-table no_such_table", {"no_such_table"});
+  expectFailure("--label-table semantic_kitti_training", {"--label-table", "--semantics", "not given"});
+  ASSERT_EQ(benchmark("--semantics net --label-table semantic_kitti_training --algorithms euclidean --output out"), 0)
+      << err();
+  for (const std::string sequence : {"03", "08"})
+    for (std::uint32_t scan = 0; scan < 3; ++scan)
+    {
+      const fs::path file = output("euclidean", sequence, scan);
+      EXPECT_EQ(read(file), read(folder_ / "raw" / fs::relative(file, folder_ / "out"))) << file;
+    }
+}
+
 TEST_F(PanopticBenchmark, JobsGiveTheSameBytes)
 {
   ASSERT_EQ(benchmark("--jobs 1 --output out --report one.json"), 0) << err();
