@@ -78,11 +78,17 @@ function(add_python_tests)
   endif()
   set(tests ${CMAKE_CURRENT_SOURCE_DIR}/test/python)
   set(pytest ${Python3_EXECUTABLE} -m pytest -q -p no:cacheprovider)
-  add_test(NAME python COMMAND ${pytest} ${tests} --ignore ${tests}/cluster_test.py)
-  # skipped, with the reason, where there is no Dask; status 5: no test was run
-  add_test(NAME python_cluster COMMAND ${pytest} -rs ${tests}/cluster_test.py)
-  set_tests_properties(python_cluster PROPERTIES SKIP_RETURN_CODE 5)
-  foreach(name python python_cluster)
+  add_test(NAME python COMMAND ${pytest} ${tests} --ignore-glob ${tests}/cluster*)
+  set(names python)
+  file(GLOB cluster_tests CONFIGURE_DEPENDS ${tests}/cluster*_test.py)
+  foreach(path ${cluster_tests})
+    get_filename_component(name ${path} NAME_WE)
+    # skipped, with the reason, where there is no Dask; status 5: no test was run
+    add_test(NAME python_${name} COMMAND ${pytest} -rs ${path})
+    set_tests_properties(python_${name} PROPERTIES SKIP_RETURN_CODE 5)
+    list(APPEND names python_${name})
+  endforeach()
+  foreach(name ${names})
     set_tests_properties(
       ${name} PROPERTIES ENVIRONMENT "PYTHONPATH=${path}:$ENV{PYTHONPATH};PYTHONDONTWRITEBYTECODE=1;\
 LIDAR_PANOPTIC_BENCHMARK=$<TARGET_FILE:panoptic_benchmark>;LIDAR_PANOPTIC_WORKSPACE=$<BOOL:${LIDAR_PANOPTIC_ROS}>")
