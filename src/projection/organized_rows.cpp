@@ -37,12 +37,17 @@ void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
   for (std::size_t i = 0; i <= size && !has_lists; ++i) image.begin[i] = static_cast<std::uint32_t>(i);
 }
 
-/// Gives `count` neighbouring pixels their points, which lie `step` apart as sent.
+/// Gives `count` neighbouring pixels their points, which lie `step` apart as sent and are fetched before they are read.
 void paint(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t step, std::size_t count)
 {
+  constexpr std::size_t kAhead = 32;
   Projection& image = out.image;
   for (std::size_t end = pixel + count; pixel < end; ++pixel, point += step)
   {
+    const std::size_t next = std::min(point + kAhead * step, out.points.size() - 1);
+    __builtin_prefetch(&out.points[next]);
+    __builtin_prefetch(&out.labels[next]);
+    __builtin_prefetch(&image.pixel_of_point[next], 1);
     const ScanPoint& from = out.points[point];
     const bool is_return = isReturn(from);
     LabelledPoint& to = image.cloud.points[pixel];
@@ -69,18 +74,12 @@ void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement
   const auto lineBegin = [&](std::size_t line)
   { return (row_of_line.empty() ? line : row_of_line[line]) * out.image.cloud.width; };
 
-  // what was read of a tile is still in the cache when its pixels are painted
-  const std::size_t tile = rows_are_rings ? 1 : 16;
-  for (std::size_t row = 0; row < height && width > 0; row += tile)
+  if (width == 0) return;
+  for (std::size_t row = 0; row < height; ++row)
   {
-    const std::size_t rows = std::min(tile, height - row);
-    for (std::size_t r = row; r < row + rows; ++r)
-      readScan(raw, fields, r, 0, width, &out.points[r * width], &out.labels[r * width]);
-    if (rows_are_rings)
-      paint(out, lineBegin(row), row * width, 1, width);
-    else
-      for (std::size_t ring = 0; ring < width; ++ring)
-        paint(out, lineBegin(ring) + row, row * width + ring, width, rows);
+    readScan(raw, fields, row, 0, width, &out.points[row * width], &out.labels[row * width]);
+    if (rows_are_rings) paint(out, lineBegin(row), row * width, 1, width);
   }
+  for (std::size_t ring = 0; ring < width && !rows_are_rings; ++ring) paint(out, lineBegin(ring), ring, width, height);
 }
 }  // namespace lidar_panoptic_clustering

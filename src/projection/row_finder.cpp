@@ -1,6 +1,6 @@
 #include "lidar_panoptic_clustering/projection/row_finder.h"
 
-#include "lidar_panoptic_clustering/projection/azimuth.h"
+#include "projection/point_azimuths.h"
 
 #include <algorithm>
 #include <cmath>
@@ -12,7 +12,6 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr double kFullTurn = 6.28318530717958648;
 constexpr std::uint32_t kMinColumns = 16, kMaxColumns = 16384;
 
@@ -46,8 +45,7 @@ std::uint32_t RowFinder::byRing(const std::vector<ScanPoint>& scan, const std::v
     throw std::invalid_argument("expected ring numbers below " + std::to_string(limit) +
                                 (rows > 0 ? ", the sensor's beams" : "") + ", found " + std::to_string(highest));
   directions_.resize(scan.size());
-  for (std::size_t i = 0; i < scan.size(); ++i)
-    directions_[i] = {hasDirection(scan[i]) ? fastAzimuth(scan[i].x, scan[i].y) : kNaN, ring_of_point[i]};
+  forEachAzimuth(scan, [&](std::size_t i, float azimuth, float) { directions_[i] = {azimuth, ring_of_point[i]}; });
   const std::uint32_t rings = rows > 0 ? rows : std::max(least, beamsOf(highest));
   orderRings(scan, rings, true);
   if (order_.tellsNothing())
@@ -64,16 +62,15 @@ std::uint32_t RowFinder::byBeam(const std::vector<ScanPoint>& scan, const BeamTa
   directions_.resize(scan.size());
   double misfit = 0.0;
   std::size_t looked_at = 0;
-  for (std::size_t i = 0; i < scan.size(); ++i)
-  {
-    const ScanPoint& p = scan[i];
-    const float squared_range = p.x * p.x + p.y * p.y + p.z * p.z;
-    directions_[i] = {kNaN, 0};
-    if (!hasDirection(p)) continue;
-    const float sine = p.z / std::sqrt(squared_range);
-    directions_[i] = {fastAzimuth(p.x, p.y), beams.nearest(sine)};
-    if (i % 13 == 0) misfit += beams.misfit(sine, directions_[i].row), ++looked_at;
-  }
+  forEachAzimuth(scan,
+                 [&](std::size_t i, float azimuth, float squared_range)
+                 {
+                   directions_[i] = {azimuth, 0};
+                   if (std::isnan(azimuth)) return;
+                   const float sine = scan[i].z / std::sqrt(squared_range);
+                   directions_[i].row = beams.nearest(sine);
+                   if (i % 13 == 0) misfit += beams.misfit(sine, directions_[i].row), ++looked_at;
+                 });
   if (looked_at >= kFewest && misfit > kMostMisfit * static_cast<double>(looked_at))
     throw std::invalid_argument(
         "expected points at the elevations of the sensor's beams, found them " +

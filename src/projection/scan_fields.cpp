@@ -66,31 +66,47 @@ const RawField* findCoordinate(const RawCloud& cloud, const char* name)
   return field;
 }
 
-/// Whether coordinates and intensity are float32 and the coordinates lie one after the other, as of nearly all drivers.
-bool areFloatsInARow(const ScanFields& fields)
+bool isFloat(const RawField* field)
 {
-  const auto isFloat = [](const RawField& field) { return field.type() == NumberType::kFloat32; };
-  return isFloat(*fields.x) && isFloat(*fields.y) && isFloat(*fields.z) && fields.intensity != nullptr &&
-         isFloat(*fields.intensity) && fields.y->offset == fields.x->offset + sizeof(float) &&
-         fields.z->offset == fields.y->offset + sizeof(float);
+  return field != nullptr && field->type() == NumberType::kFloat32;
 }
 
-/// These, in one go.
+/// Whether the coordinates are float32 and lie one after the other, as of nearly all drivers.
+bool areFloatsInARow(const ScanFields& fields)
+{
+  return isFloat(fields.x) && isFloat(fields.y) && isFloat(fields.z) &&
+         fields.y->offset == fields.x->offset + sizeof(float) && fields.z->offset == fields.y->offset + sizeof(float);
+}
+
+/// These, and an intensity of the same type, in one go; without one the intensities are 0.
 void copyPoints(const PointRun& run, const ScanFields& fields, ScanPoint* to)
 {
-  const std::uint8_t *place = run.first + fields.x->offset, *intensity = run.first + fields.intensity->offset;
-  for (std::size_t i = 0; i < run.count; ++i, ++to, place += run.step, intensity += run.step)
+  constexpr float kNone = 0.0F;
+  const bool has_intensity = isFloat(fields.intensity);
+  const std::uint8_t* place = run.first + fields.x->offset;
+  const std::uint8_t* intensity =
+      has_intensity ? run.first + fields.intensity->offset : reinterpret_cast<const std::uint8_t*>(&kNone);
+  const std::size_t step = has_intensity ? run.step : 0;
+  for (std::size_t i = 0; i < run.count; ++i, ++to, place += run.step, intensity += step)
   {
     std::memcpy(&to->x, place, 3 * sizeof(float));
     std::memcpy(&to->remission, intensity, sizeof(float));
   }
 }
 
-void readPoints(const PointRun& run, const ScanFields& fields, ScanPoint* to)
+void readPoints(const PointRun& run, const ScanFields& fields, bool in_a_row, ScanPoint* to)
 {
-  readFloats(run, *fields.x, &to->x, sizeof(ScanPoint));
-  readFloats(run, *fields.y, &to->y, sizeof(ScanPoint));
-  readFloats(run, *fields.z, &to->z, sizeof(ScanPoint));
+  if (in_a_row)
+  {
+    copyPoints(run, fields, to);
+    if (fields.intensity == nullptr || isFloat(fields.intensity)) return;
+  }
+  else
+  {
+    readFloats(run, *fields.x, &to->x, sizeof(ScanPoint));
+    readFloats(run, *fields.y, &to->y, sizeof(ScanPoint));
+    readFloats(run, *fields.z, &to->z, sizeof(ScanPoint));
+  }
   if (fields.intensity != nullptr)
     readFloats(run, *fields.intensity, &to->remission, sizeof(ScanPoint));
   else
@@ -128,10 +144,7 @@ void readScan(const RawCloud& cloud, const ScanFields& fields, std::size_t row, 
   for (std::size_t begin = 0; begin < count; begin += kRun)
   {
     const PointRun run{cloud.point(row, column + begin), cloud.point_step, std::min(kRun, count - begin)};
-    if (in_a_row)
-      copyPoints(run, fields, points + begin);
-    else
-      readPoints(run, fields, points + begin);
+    readPoints(run, fields, in_a_row, points + begin);
     if (fields.label != nullptr)
       readIds(run, *fields.label, labels + begin, sizeof(std::uint32_t));
     else

@@ -110,9 +110,13 @@ public:
 private:
   void locate(ScanPoints scan, const std::vector<PointDirection>& directions, std::uint32_t columns, float shift,
               Projection& out);
-  void listPoints(Projection& out) const;
+  static void findPixels(const std::vector<PointDirection>& directions, std::size_t begin, std::size_t end,
+                         std::uint32_t columns, float shift, Projection& out);
+  void takePixel(ScanPoints scan, std::uint32_t point, PointDirection direction, Projection& out);
+  void listPoints(Projection& out);
 
   std::vector<std::uint32_t> hidden_;  ///< points that own no pixel
+  std::vector<std::uint32_t> full_;    ///< the pixels these stand in
   std::size_t returns_ = 0, without_return_ = 0;
 };
 
