@@ -50,13 +50,7 @@ void GroundLabeler::label(LabelledCloud& cloud)
   const bool closed = closesOnItself(config_.field_of_view, measureColumnAngle(cloud, max_range), cloud.width);
   components_.find(cloud, returns_, {above, kStep, static_cast<float>(config_.link_m)}, closed);
   judge();
-  shown_.resize(cloud.points.size());
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
-  {
-    const std::uint32_t part = components_.partOf(i);
-    shown_[i] = part != ScanComponents::kNone ? shown_of_part_[part] : returns_[i].isReturn() ? kGround : kIgnored;
-    cloud.points[i].label = ids_[shown_[i]];
-  }
+  show(cloud);
 }
 
 /// A component's parts are what it is, but for people.
@@ -78,6 +72,23 @@ void GroundLabeler::judge()
   for (std::uint32_t part = 0; part < parts.size(); ++part)
     if (shown_of_part_[part] == kIgnored)
       shown_of_part_[part] = shown_of_component_[components_.componentOfPart()[part]];
+}
+
+void GroundLabeler::show(LabelledCloud& cloud)
+{
+  shown_.resize(cloud.points.size());
+  // at hand: bytes that are written may be anything's
+  const std::array<std::uint32_t, 4> ids = ids_;
+  const unsigned char* const of_part = shown_of_part_.data();
+  const GroundedReturn* const returns = returns_.data();
+  LabelledPoint* const points = cloud.points.data();
+  unsigned char* const shown = shown_.data();
+  for (std::size_t i = 0; i < returns_.size(); ++i)
+  {
+    const std::uint32_t part = components_.partOf(i);
+    shown[i] = part != ScanComponents::kNone ? of_part[part] : returns[i].isReturn() ? kGround : kIgnored;
+    points[i].label = ids[shown[i]];
+  }
 }
 
 void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels)

@@ -13,12 +13,15 @@ namespace
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint16_t kNoCell = 0xFFFF;
-constexpr std::uint32_t kSectors = PolarGrid::kSectors, kBins = PolarGrid::kBins, kCells = PolarGrid::kCells;
+constexpr std::uint32_t kBins = PolarGrid::kBins, kCells = PolarGrid::kCells;
 
 const PolarGrid kGrid;
 }  // namespace
 
-GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), expected_(kSectors), lines_(kCells) {}
+GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), expected_(kSectors), lines_(kCells)
+{
+  static_assert(kSectors == PolarGrid::kSectors);
+}
 
 bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope,
                             std::vector<GroundedReturn>& returns)
@@ -202,13 +205,6 @@ void GroundSurface::drawLines()
     lines_[cell] = {here.distance, here.height,
                     is_last ? 0.0F : (next.height - here.height) / (next.distance - here.distance)};
   }
-}
-
-/// On the line between the grounds of two cells; beyond the last one as there.
-float GroundSurface::groundAt(std::uint32_t cell, float range) const
-{
-  const Line& line = lines_[cell - (range < lines_[cell].distance ? kSectors : 0)];  // the first bin has its at 0 m
-  return line.ground + line.rise * (range - line.distance);
 }
 
 float GroundSurface::heightOf(float x, float y, float z) const

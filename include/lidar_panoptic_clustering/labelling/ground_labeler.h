@@ -95,6 +95,7 @@ public:
 
 private:
   void judge();
+  void show(LabelledCloud& cloud);
   unsigned char hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
 
   GroundLabelerConfig config_;

@@ -45,6 +45,8 @@ public:
   const SlopedPlane& plane() const { return plane_; }
 
 private:
+  static constexpr std::uint32_t kSectors = 180;  ///< see PolarGrid
+
   /// The returns of a cell: the lowest, and how high they reach.
   struct Lowest
   {
@@ -76,7 +78,12 @@ private:
   void bridge();
   void flatten();
   void drawLines();
-  float groundAt(std::uint32_t cell, float range) const;
+  /// On the line between the grounds of two cells; beyond the last one as there.
+  float groundAt(std::uint32_t cell, float range) const
+  {
+    const Line& line = range < lines_[cell].distance ? lines_[cell - kSectors] : lines_[cell];  // the first's is at 0 m
+    return line.ground + line.rise * (range - line.distance);
+  }
   void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const;
 
   SlopedPlane plane_;

@@ -85,21 +85,31 @@ private:
   {
     std::uint32_t a, b;
   };
+  /// A column's last return so far.
+  struct Above
+  {
+    std::uint32_t pixel, part;
+  };
+  class RowLinker;
 
   void link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, const Distances& distances,
             bool full_turn);
-  void gatherParts(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void numberParts();
   void joinParts();
   void examineTops(const LabelledCloud& cloud, bool highest_first);
   void examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
                    bool highest_first);
-  void examineLines(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
+  void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
+                  std::int32_t direction);
 
   DisjointSets sets_;
   std::vector<std::uint32_t> part_of_;
-  std::vector<std::uint32_t> pixels_;      ///< of the returns above the ground, in row-major order
-  std::vector<std::uint32_t> row_before_;  ///< by column: the last row of a return above the ground
-  std::vector<Pair> loose_;                ///< runs closer than the link, not the step
+  std::vector<std::uint32_t> pixels_;        ///< of the returns above the ground, in row-major order
+  std::vector<std::uint32_t> begin_of_run_;  ///< in pixels_; a run lies in one row, and the runs one after the other
+  std::vector<std::uint32_t> pixel_before_;  ///< by column: that of the last return above the ground
+  std::vector<Above> above_;                 ///< by column
+  std::vector<Pair> loose_;                  ///< runs closer than the link, not the step
   std::vector<std::uint32_t> part_of_run_;
   std::vector<ScanComponent> parts_, components_;
   std::vector<std::uint32_t> component_of_part_;
