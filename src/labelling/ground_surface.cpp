@@ -16,6 +16,20 @@ constexpr std::uint16_t kNoCell = 0xFFFF;
 constexpr std::uint32_t kBins = PolarGrid::kBins, kCells = PolarGrid::kCells;
 
 const PolarGrid kGrid;
+
+/// Coordinates of four points, of fewer where a cloud ends: then the last one's again.
+struct FourPoints
+{
+  FourPoints(const LabelledPoint* points, std::size_t count)
+  {
+    const std::size_t last = std::min<std::size_t>(count, 4) - 1;
+    const LabelledPoint &a = points[0], &b = points[std::min<std::size_t>(last, 1)],
+                        &c = points[std::min<std::size_t>(last, 2)], &d = points[last];
+    x = FourFloats{a.x, b.x, c.x, d.x}, y = FourFloats{a.y, b.y, c.y, d.y}, z = FourFloats{a.z, b.z, c.z, d.z};
+  }
+
+  FourFloats x, y, z;
+};
 }  // namespace
 
 GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), expected_(kSectors), lines_(kCells)
@@ -23,8 +37,8 @@ GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), expected_(kSe
   static_assert(kSectors == PolarGrid::kSectors);
 }
 
-bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope,
-                            std::vector<GroundedReturn>& returns)
+bool GroundSurface::find(const LabelledCloud& cloud, float max_range_m, float max_slope,
+                         std::vector<GroundedReturn>& returns)
 {
   sortIntoCells(cloud, max_range_m, returns);
   const bool found = findPlane(cloud);
@@ -36,41 +50,46 @@ bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float
   else
     flatten();
   drawLines();
-  writeHeights(cloud, returns);
   return found;
 }
 
 void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns)
 {
   const float max_squared_range = max_range_m * max_range_m;
+  const std::size_t size = cloud.points.size();
   lowest_.assign(kCells, {kFar, 0, -kFar});
-  cell_of_.resize(cloud.points.size());
-  returns.resize(cloud.points.size());
+  cell_of_.resize(size);
+  returns.resize(size);
   std::uint32_t open = 0;  // neighbours share a cell: it is kept at hand until the next one
   Lowest low = lowest_[open];
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+  for (std::size_t first = 0; first < size; first += 4)
   {
-    const LabelledPoint& p = cloud.points[i];
-    const float squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
-    if (!(squared > 0.0F && whole <= max_squared_range))  // NaN and infinity too
+    const FourPoints p(cloud.points.data() + first, size - first);
+    const FourFloats squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
+    const FourInts is_return = (squared > 0.0F) & (whole <= max_squared_range);  // not NaN and infinity
+    const FourFloats range = select(is_return, squareRoot(squared), broadcast(kNaN));
+    std::uint32_t cells[4];
+    kGrid.cellsOf(p.x, p.y, range, cells);
+    for (int k = 0; k < 4; ++k)
     {
-      cell_of_[i] = kNoCell;
-      returns[i] = {kNaN, kNaN};
-      continue;
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      if (i >= size) break;
+      returns[i] = {range[k], kNaN};
+      const std::uint32_t cell = is_return[k] != 0 ? cells[k] : kNoCell;
+      cell_of_[i] = static_cast<std::uint16_t>(cell);
+      if (cell == kNoCell) continue;
+      if (cell != open)
+      {
+        lowest_[open] = low;
+        open = cell;
+        low = lowest_[open];
+      }
+      const float z = p.z[k];
+      const bool lower = z < low.z;  // without a branch: no predictor knows which return is lower
+      low.z = lower ? z : low.z;
+      low.top = std::max(low.top, z);
+      low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
     }
-    const float range = returns[i].range = std::sqrt(squared);
-    const std::uint32_t cell = kGrid.cellOf(p.x, p.y, range);
-    cell_of_[i] = static_cast<std::uint16_t>(cell);
-    if (cell != open)
-    {
-      lowest_[open] = low;
-      open = cell;
-      low = lowest_[open];
-    }
-    const bool lower = p.z < low.z;  // without a branch: no predictor knows which return is lower
-    low.z = lower ? p.z : low.z;
-    low.top = std::max(low.top, p.z);
-    low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
   }
   lowest_[open] = low;
 }
@@ -213,14 +232,20 @@ float GroundSurface::heightOf(float x, float y, float z) const
   return plane_.heightOf(x, y, z) - groundAt(kGrid.cellOf(x, y, range), range);
 }
 
-void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const
+void GroundSurface::writeHeights(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
+                                 std::vector<GroundedReturn>& returns) const
 {
   const SlopedPlane plane = plane_;
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+  for (std::size_t first = begin; first < end; first += 4)
   {
-    if (cell_of_[i] == kNoCell) continue;
-    const LabelledPoint& p = cloud.points[i];
-    returns[i].height = plane.heightOf(p.x, p.y, p.z) - groundAt(cell_of_[i], returns[i].range);
+    const FourPoints p(cloud.points.data() + first, end - first);
+    const FourFloats height = p.z - plane.slope_x * p.x - plane.slope_y * p.y - plane.offset;
+    for (int k = 0; k < 4; ++k)
+    {
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      if (i >= end) break;
+      if (cell_of_[i] != kNoCell) returns[i].height = height[k] - groundAt(cell_of_[i], returns[i].range);
+    }
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -54,15 +54,25 @@ void ScanComponent::add(const ScanComponent& other)
   ends += other.ends, free_ends += other.free_ends;
 }
 
-void ScanComponents::find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                          const Distances& distances, bool full_turn)
+void ScanComponents::start(std::uint32_t rows, std::uint32_t columns, const Distances& distances, bool full_turn)
 {
-  link(cloud, returns, distances, full_turn);
+  rows_ = rows, columns_ = columns, distances_ = distances, full_turn_ = full_turn;
+  sets_.reset(0);
+  part_of_.assign(std::size_t{rows} * columns, kNone);
+  pixels_.clear();
+  begin_of_run_.clear();
+  loose_.clear();
+  pixel_before_.assign(columns, kNone);
+}
+
+void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
+{
+  begin_of_run_.push_back(static_cast<std::uint32_t>(pixels_.size()));
   numberParts();
   joinParts();
   const bool highest_first = isHighestFirst(cloud, returns);
   examineTops(cloud, highest_first);
-  examineFeet(cloud, returns, distances.above, highest_first);
+  examineFeet(returns, highest_first);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run) measureRun(cloud, returns, run);
   components_.assign(component_count_, {});
   for (std::uint32_t part = 0; part < parts_.size(); ++part) components_[component_of_part_[part]].add(parts_[part]);
@@ -73,18 +83,16 @@ void ScanComponents::find(const LabelledCloud& cloud, const std::vector<Grounded
 class ScanComponents::RowLinker
 {
 public:
-  RowLinker(ScanComponents& to, const LabelledCloud& cloud, const Distances& distances)
+  RowLinker(ScanComponents& to, const LabelledCloud& cloud)
       : to_(to),
         points_(cloud.points.data()),
-        columns_(cloud.width),
-        squared_step_(distances.step * distances.step),
-        squared_link_(distances.link * distances.link),
+        columns_(to.columns_),
+        squared_step_(to.distances_.step * to.distances_.step),
+        squared_link_(to.distances_.link * to.distances_.link),
         run_of_(to.part_of_.data()),
         pixel_before_(to.pixel_before_.data())
   {
   }
-
-  void startRow() { first_ = last_ = run_ = run_above_ = loose_above_ = kNone; }
 
   /// The next return of the row that is above the ground.
   void add(std::uint32_t pixel, std::uint32_t column)
@@ -140,25 +148,15 @@ private:
   std::uint32_t first_ = kNone, last_ = kNone, run_ = kNone, run_above_ = kNone, loose_above_ = kNone;
 };
 
-void ScanComponents::link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                          const Distances& distances, bool full_turn)
+void ScanComponents::addRow(std::uint32_t row, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
-  sets_.reset(0);
-  part_of_.assign(returns.size(), kNone);
-  pixels_.clear();
-  begin_of_run_.clear();
-  loose_.clear();
-  pixel_before_.assign(cloud.width, kNone);
-  RowLinker linker(*this, cloud, distances);
-  const GroundedReturn* at = returns.data();
-  for (std::uint32_t row = 0, pixel = 0; row < cloud.height; ++row)
-  {
-    linker.startRow();
-    for (std::uint32_t column = 0; column < cloud.width; ++column, ++pixel)
-      if (at[pixel].height >= distances.above) linker.add(pixel, column);  // false for no return too
-    if (full_turn) linker.closeRow();
-  }
-  begin_of_run_.push_back(static_cast<std::uint32_t>(pixels_.size()));
+  RowLinker linker(*this, cloud);
+  const std::uint32_t begin = row * columns_;
+  const GroundedReturn* const at = returns.data() + begin;
+  const float above = distances_.above;
+  for (std::uint32_t column = 0; column < columns_; ++column)
+    if (at[column].height >= above) linker.add(begin + column, column);  // false for no return too
+  if (full_turn_) linker.closeRow();
 }
 
 void ScanComponents::numberParts()
@@ -197,39 +195,45 @@ void ScanComponents::examineTops(const LabelledCloud& cloud, bool highest_first)
     if (part_of_[pixel] != kNone && cloud.points[pixel].z > 0.0F) parts_[part_of_[pixel]].open_top = true;
 }
 
-void ScanComponents::examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
-                                 bool highest_first)
+void ScanComponents::examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first)
+{
+  feet_.clear();
+  for (const std::uint32_t pixel : pixels_) examineFoot(returns, pixel, highest_first);
+}
+
+/// What the next beams below a return of a part met, down its foot: `pixel` is above the ground.
+void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first)
 {
   constexpr float kUnder = 0.15F;  // [m] more than a wall's foot and range noise
   // [m] above the ground at the foot: from the noise of ground and ranges on; what is undercut is seen to be so
   constexpr float kFoot = 0.05F;
-  const std::uint32_t columns = cloud.width;
-  above_.assign(columns, {0, kNone});
-  for (std::uint32_t k = 0; k < cloud.height; ++k)
+  const std::uint32_t part = part_of_[pixel], size = rows_ * columns_;
+  const std::uint32_t step = highest_first ? columns_ : 0U - columns_;
+  const auto isInside = [size](std::uint32_t at) { return at < size; };  // above row 0 it wraps to beyond the last
+  bool is_first = true;
+  for (std::uint32_t over = pixel;;)
   {
-    const std::uint32_t begin = (highest_first ? k : cloud.height - 1 - k) * columns;
-    for (std::uint32_t column = 0; column < columns; ++column)
+    std::uint32_t under = over + step, rows = 1;
+    for (; isInside(under) && !returns[under].isReturn(); ++rows) under += step;
+    if (!isInside(under) || part_of_[under] == part) return;
+    const float beyond = returns[under].range - returns[over].range;
+    ScanComponent& c = parts_[part];
+    if (const std::uint32_t other = part_of_[under]; other != kNone)
     {
-      const std::uint32_t pixel = begin + column, part = part_of_[pixel];
-      const GroundedReturn here = returns[pixel];
-      if (!here.isReturn()) continue;
-      const Above over = std::exchange(above_[column], {pixel, part});
-      if (over.part == kNone || over.part == part) continue;
-      const float beyond = here.range - returns[over.pixel].range;
-      ScanComponent& c = parts_[over.part];
-      if (part != kNone)
-      {
-        c.hidden += component_of_part_[over.part] != component_of_part_[part] && beyond < -kUnder ? 1U : 0U;
-        continue;
-      }
-      if ((pixel > over.pixel ? pixel - over.pixel : over.pixel - pixel) > kRowReach * columns) continue;
-      const bool is_first = returns[over.pixel].height >= above;  // not a foot itself
-      const bool is_foot = std::abs(beyond) <= kUnder && here.height > kFoot;
-      if (is_foot) part_of_[pixel] = above_[column].part = over.part;
-      if (!is_first) continue;
+      c.hidden += component_of_part_[part] != component_of_part_[other] && beyond < -kUnder ? 1U : 0U;
+      return;
+    }
+    if (rows > kRowReach) return;
+    const bool is_foot = std::abs(beyond) <= kUnder && returns[under].height > kFoot;
+    if (is_first)
+    {
       c.undercut += beyond > kUnder ? 1U : 0U;
       c.blocked += is_foot ? 1U : 0U;
     }
+    if (!is_foot) return;
+    part_of_[under] = part;
+    feet_.push_back(under);
+    over = under, is_first = false;
   }
 }
 

@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/labelling/ground_plane.h"
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -33,10 +34,15 @@ class GroundSurface
 public:
   GroundSurface();
 
-  /// Writes where each point of `cloud` lies. No return is NaN, infinity, exactly (0, 0, 0), anything straight above or
-  /// below the sensor, and what is farther than `max_range_m`. `max_slope`: rise over run, against the plane.
+  /// Writes how far away each point of `cloud` is. No return is NaN, infinity, exactly (0, 0, 0), anything straight
+  /// above or below the sensor, and what is farther than `max_range_m`. `max_slope`: rise over run, against the plane.
   /// Returns whether there is ground; without it, heights are those above the lowest return.
-  bool measure(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<GroundedReturn>& returns);
+  bool find(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<GroundedReturn>& returns);
+
+  /// Writes the heights of points of the cloud that find() was given, from `begin` to before `end`. Apart from find(),
+  /// so that a row can be worked on while it is in the cache.
+  void writeHeights(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
+                    std::vector<GroundedReturn>& returns) const;
 
   /// Above the ground of the last scan [m].
   float heightOf(float x, float y, float z) const;
@@ -84,7 +90,6 @@ private:
     const Line& line = range < lines_[cell].distance ? lines_[cell - kSectors] : lines_[cell];  // the first's is at 0 m
     return line.ground + line.rise * (range - line.distance);
   }
-  void writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns) const;
 
   SlopedPlane plane_;
   std::vector<std::uint16_t> cell_of_;  ///< by point
