@@ -44,19 +44,46 @@ void GroundLabeler::label(LabelledCloud& cloud)
     throw std::invalid_argument("expected width x height points, found a cloud of " + std::to_string(cloud.width) +
                                 " x " + std::to_string(cloud.height) + " with " + std::to_string(cloud.points.size()));
   const auto max_range = static_cast<float>(config_.max_range_m);
-  found_ground_ = surface_.measure(cloud, max_range, static_cast<float>(config_.max_slope), returns_);
+  found_ground_ = surface_.find(cloud, max_range, static_cast<float>(config_.max_slope), returns_);
   const float above = found_ground_ ? static_cast<float>(config_.ground_height_m)  //
                                     : -std::numeric_limits<float>::infinity();
   const bool closed = closesOnItself(config_.field_of_view, measureColumnAngle(cloud, max_range), cloud.width);
-  components_.find(cloud, returns_, {above, kStep, static_cast<float>(config_.link_m)}, closed);
-  judge();
+  components_.start(cloud.height, cloud.width, {above, kStep, static_cast<float>(config_.link_m)}, closed);
   shown_.resize(cloud.points.size());
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+  for (std::uint32_t row = 0; row < cloud.height; ++row)
   {
-    const std::uint32_t part = components_.partOf(i);
-    shown_[i] = part != ScanComponents::kNone ? shown_of_part_[part] : returns_[i].isReturn() ? kGround : kIgnored;
-    cloud.points[i].label = ids_[shown_[i]];
+    const std::size_t begin = std::size_t{row} * cloud.width, end = begin + cloud.width;
+    surface_.writeHeights(cloud, begin, end, returns_);
+    components_.addRow(row, cloud, returns_);
+    showGround(cloud, begin, end);
   }
+  components_.finish(cloud, returns_);
+  judge();
+  for (const std::uint32_t pixel : components_.pixels()) showPart(cloud, pixel);
+  for (const std::uint32_t pixel : components_.feet()) showPart(cloud, pixel);
+}
+
+/// What all returns are as long as nothing stands there.
+void GroundLabeler::showGround(LabelledCloud& cloud, std::size_t begin, std::size_t end)
+{
+  // at hand: bytes that are written may be anything's
+  const std::uint32_t ignored = ids_[kIgnored], ground = ids_[kGround];
+  const GroundedReturn* const returns = returns_.data();
+  LabelledPoint* const points = cloud.points.data();
+  unsigned char* const shown = shown_.data();
+  for (std::size_t i = begin; i < end; ++i)
+  {
+    const bool is_return = returns[i].isReturn();
+    shown[i] = is_return ? kGround : kIgnored;
+    points[i].label = is_return ? ground : ignored;
+  }
+}
+
+void GroundLabeler::showPart(LabelledCloud& cloud, std::uint32_t pixel)
+{
+  const unsigned char shown = shown_of_part_[components_.partOf(pixel)];
+  shown_[pixel] = shown;
+  cloud.points[pixel].label = ids_[shown];
 }
 
 /// A component's parts are what it is, but for people.

@@ -1,9 +1,8 @@
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 
-#include <Eigen/Dense>
+#include "polar_grid.h"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
 
@@ -14,236 +13,145 @@ namespace
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint16_t kNoCell = 0xFFFF;
+constexpr std::uint32_t kBins = PolarGrid::kBins, kCells = PolarGrid::kCells;
 
-constexpr std::uint32_t kSectors = 180;  // two degrees: half a metre at 15 m
+const PolarGrid kGrid;
 
-// bins of range grow with it, as the rings on the ground move apart
-struct Zone
+/// Coordinates of four points, of fewer where a cloud ends: then the last one's again.
+struct FourPoints
 {
-  float end, width;  // [m]
-};
-constexpr std::array<Zone, 4> kZones = {{{10.0F, 0.5F}, {30.0F, 1.0F}, {60.0F, 2.0F}, {120.0F, 4.0F}}};
-constexpr float kFinest = 0.5F;
-constexpr std::uint32_t kBins = 20 + 20 + 15 + 15;
-constexpr std::uint32_t kCells = kSectors * kBins;
-
-/// The bins' places, and the bin of each half metre.
-struct Bins
-{
-  std::array<float, kBins> middle{}, width{};
-  std::array<std::uint8_t, 240> of_step{};
-
-  Bins()
+  FourPoints(const LabelledPoint* points, std::size_t count)
   {
-    std::uint32_t bin = 0;
-    float begin = 0.0F;
-    for (const Zone& zone : kZones)
-      for (; begin < zone.end; begin += zone.width, ++bin)
-      {
-        middle[bin] = begin + 0.5F * zone.width, width[bin] = zone.width;
-        const auto first = static_cast<std::size_t>(begin / kFinest);
-        const auto last = static_cast<std::size_t>((begin + zone.width) / kFinest);
-        for (std::size_t step = first; step < last; ++step) of_step[step] = static_cast<std::uint8_t>(bin);
-      }
+    const std::size_t last = std::min<std::size_t>(count, 4) - 1;
+    const LabelledPoint &a = points[0], &b = points[std::min<std::size_t>(last, 1)],
+                        &c = points[std::min<std::size_t>(last, 2)], &d = points[last];
+    x = FourFloats{a.x, b.x, c.x, d.x}, y = FourFloats{a.y, b.y, c.y, d.y}, z = FourFloats{a.z, b.z, c.z, d.z};
   }
 
-  /// The last bin holds all beyond it.
-  std::uint32_t find(float range) const
-  {
-    const auto step = static_cast<std::uint32_t>(range / kFinest);
-    return of_step[std::min<std::size_t>(step, of_step.size() - 1)];
-  }
+  FourFloats x, y, z;
 };
-
-const Bins kGrid;
-
-/// By the angle of the square that turns with x and y instead of the circle's: no trigonometry.
-std::uint32_t sectorOf(float x, float y)
-{
-  const float turn = y / (std::abs(x) + std::abs(y));            // -1..1
-  const float quarters = x >= 0.0F ? 1.0F + turn : 3.0F - turn;  // 0..4
-  return std::min(kSectors - 1, static_cast<std::uint32_t>(quarters * (0.25F * kSectors)));
-}
 }  // namespace
 
-GroundSurface::GroundSurface()
-    : lowest_(kCells), ground_(kCells), distance_(kCells), unseen_(kCells), expected_(kSectors), lines_(kCells)
+GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), expected_(kSectors), lines_(kCells)
 {
+  static_assert(kSectors == PolarGrid::kSectors);
 }
 
-bool GroundSurface::measure(const LabelledCloud& cloud, float max_range_m, float max_slope,
-                            std::vector<GroundedReturn>& returns)
+bool GroundSurface::find(const LabelledCloud& cloud, float max_range_m, float max_slope,
+                         std::vector<GroundedReturn>& returns)
 {
   sortIntoCells(cloud, max_range_m, returns);
   const bool found = findPlane(cloud);
   if (found)
   {
-    follow(cloud, max_slope);
+    follow(cloud, returns, max_slope);
     bridge();
   }
   else
     flatten();
-  writeHeights(cloud, returns);
+  drawLines();
   return found;
 }
 
 void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns)
 {
   const float max_squared_range = max_range_m * max_range_m;
+  const std::size_t size = cloud.points.size();
   lowest_.assign(kCells, {kFar, 0, -kFar});
-  cell_of_.resize(cloud.points.size());
-  returns.resize(cloud.points.size());
+  cell_of_.resize(size);
+  returns.resize(size);
   std::uint32_t open = 0;  // neighbours share a cell: it is kept at hand until the next one
   Lowest low = lowest_[open];
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
+  for (std::size_t first = 0; first < size; first += 4)
   {
-    const LabelledPoint& p = cloud.points[i];
-    const float squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
-    if (!(squared > 0.0F && whole <= max_squared_range))  // NaN and infinity too
+    const FourPoints p(cloud.points.data() + first, size - first);
+    const FourFloats squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
+    const FourInts is_return = (squared > 0.0F) & (whole <= max_squared_range);  // not NaN and infinity
+    const FourFloats range = select(is_return, squareRoot(squared), broadcast(kNaN));
+    std::uint32_t cells[4];
+    kGrid.cellsOf(p.x, p.y, range, cells);
+    for (int k = 0; k < 4; ++k)
     {
-      cell_of_[i] = kNoCell;
-      returns[i] = {kNaN, kNaN};
-      continue;
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      if (i >= size) break;
+      returns[i] = {range[k], kNaN};
+      const std::uint32_t cell = is_return[k] != 0 ? cells[k] : kNoCell;
+      cell_of_[i] = static_cast<std::uint16_t>(cell);
+      if (cell == kNoCell) continue;
+      if (cell != open)
+      {
+        lowest_[open] = low;
+        open = cell;
+        low = lowest_[open];
+      }
+      const float z = p.z[k];
+      const bool lower = z < low.z;  // without a branch: no predictor knows which return is lower
+      low.z = lower ? z : low.z;
+      low.top = std::max(low.top, z);
+      low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
     }
-    const float range = returns[i].range = std::sqrt(squared);
-    const std::uint32_t cell = sectorOf(p.x, p.y) * kBins + kGrid.find(range);
-    cell_of_[i] = static_cast<std::uint16_t>(cell);
-    if (cell != open)
-    {
-      lowest_[open] = low;
-      open = cell;
-      low = lowest_[open];
-    }
-    const bool lower = p.z < low.z;  // without a branch: no predictor knows which return is lower
-    low.z = lower ? p.z : low.z;
-    low.top = std::max(low.top, p.z);
-    low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
   }
   lowest_[open] = low;
 }
 
 bool GroundSurface::findPlane(const LabelledCloud& cloud)
 {
-  constexpr float kReach = 20.0F;      // [m]
-  constexpr std::size_t kFewest = 10;  // cells
-  constexpr float kGates[] = {0.5F, 0.3F, 0.2F, 0.2F};
-  plane_ = {};
+  constexpr float kReach = 20.0F;  // [m]
   near_.clear();
   float bottom = kFar;
-  for (std::uint32_t cell = 0; cell < kCells; ++cell)
-  {
-    if (lowest_[cell].z == kFar) continue;
-    bottom = std::min(bottom, lowest_[cell].z);
-    if (kGrid.middle[cell % kBins] >= kReach) continue;
-    const LabelledPoint& p = cloud.points[lowest_[cell].point];
-    near_.push_back({p.x, p.y, p.z});
-  }
-  std::size_t on_plane = 0;
-  if (near_.size() >= kFewest)
-  {
-    votePlane();
-    for (const float gate : kGates) on_plane = fitPlane(gate);
-  }
-  const bool is_below = plane_.offset < 0.0F;  // the sensor; above it is the ground of one that stands on its head
-  if (is_below && on_plane >= std::max(kFewest, near_.size() / 10)) return true;
+  for (const Lowest& low : lowest_) bottom = std::min(bottom, low.z);
+  for (std::uint32_t sector = 0; sector < kSectors; ++sector)
+    for (std::uint32_t bin = 0; kGrid.middleOf(bin) < kReach; ++bin)
+    {
+      const Lowest& low = lowest_[PolarGrid::cell(bin, sector)];
+      if (low.z == kFar) continue;
+      const LabelledPoint& p = cloud.points[low.point];
+      near_.push_back({p.x, p.y, p.z});
+    }
+  if (findGroundPlane(near_, plane_)) return true;
   plane_ = {0.0F, 0.0F, bottom};
   return false;
 }
 
-/// The slopes and offset that most of the cells agree on, coarsely.
-void GroundSurface::votePlane()
+void GroundSurface::follow(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float max_slope)
 {
-  constexpr int kSlopes = 6;  // either side, two degrees each
-  constexpr float kSlopeStep = 0.035F, kOffsetStep = 0.25F;
-  constexpr std::size_t kOffsets = 48;  // down to 12 m below the sensor
-  constexpr std::size_t kVoters = 300;
-  const std::size_t stride = 1 + near_.size() / kVoters;
-  int most = -1;
-  for (int v = -kSlopes; v <= kSlopes; ++v)
-    for (int u = -kSlopes; u <= kSlopes; ++u)
-    {
-      const SlopedPlane plane{kSlopeStep * static_cast<float>(u), kSlopeStep * static_cast<float>(v), 0.0F};
-      std::array<int, kOffsets + 1> votes{};
-      for (std::size_t i = 0; i < near_.size(); i += stride)
-      {
-        const float below = -plane.heightOf(near_[i].x, near_[i].y, near_[i].z) / kOffsetStep;
-        if (below > 0.0F && below < kOffsets) ++votes[static_cast<std::size_t>(below)];
-      }
-      for (std::size_t k = 0; k < kOffsets; ++k)
-        if (votes[k] + votes[k + 1] > most)
-        {
-          most = votes[k] + votes[k + 1];
-          plane_ = {plane.slope_x, plane.slope_y, -kOffsetStep * static_cast<float>(k + 1)};
-        }
-    }
-}
-
-/// Least squares through the cells within `gate` of the plane so far; returns how many there are.
-std::size_t GroundSurface::fitPlane(float gate)
-{
-  Eigen::Matrix3d normal = Eigen::Matrix3d::Zero();
-  Eigen::Vector3d right = Eigen::Vector3d::Zero();
-  std::size_t count = 0;
-  for (const Low& low : near_)
-  {
-    if (std::abs(plane_.heightOf(low.x, low.y, low.z)) > gate) continue;
-    const Eigen::Vector3d row(low.x, low.y, 1.0);
-    normal += row * row.transpose();
-    right += row * static_cast<double>(low.z);
-    ++count;
-  }
-  // a ridge of a millimetre a metre: what the cells do not tell, such as the slope across a single row, stays level
-  normal.diagonal() += Eigen::Vector3d(1e-3, 1e-3, 1e-9);
-  const Eigen::Vector3f solution = normal.ldlt().solve(right).cast<float>();
-  plane_ = {solution.x(), solution.y(), solution.z()};
-  return count;
-}
-
-void GroundSurface::follow(const LabelledCloud& cloud, float max_slope)
-{
-  for (std::uint32_t sector = 0; sector < kSectors; ++sector)
-  {
-    const std::uint32_t cell = sector * kBins;
-    ground_[cell] = distance_[cell] = unseen_[cell] = 0.0F;
-  }
+  std::fill_n(ground_.begin(), kSectors, Ground{0.0F, 0.0F, 0.0F, 1.0F});
   for (std::uint32_t bin = 1; bin < kBins; ++bin)
   {
-    followTo(bin, cloud, max_slope);
+    followTo(bin, cloud, returns, max_slope);
     refuseIslands(bin);
   }
 }
 
 /// The cells of a bin, from those inside of them.
-void GroundSurface::followTo(std::uint32_t bin, const LabelledCloud& cloud, float max_slope)
+void GroundSurface::followTo(std::uint32_t bin, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                             float max_slope)
 {
   constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
   constexpr float kMostStep = 0.5F;  // [m] below a bumper
   // [m] what rises by more within a cell is a face of something, whose lower edge may hang over the ground by a sill
   constexpr float kFace = 0.3F, kFaceStep = 0.15F;
-  const float step = kGrid.middle[bin] - kGrid.middle[bin - 1];
+  const float middle = kGrid.middleOf(bin), step = middle - kGrid.middleOf(bin - 1);
+  const Ground* const inner = &ground_[PolarGrid::cell(bin - 1, 0)];
   for (std::uint32_t sector = 0; sector < kSectors; ++sector)
   {
-    const std::uint32_t inside[] = {sector * kBins + bin - 1, (sector + 1) % kSectors * kBins + bin - 1,
-                                    (sector + kSectors - 1) % kSectors * kBins + bin - 1};
-    float weights = 0.0F, expected = 0.0F, unseen = kFar;
-    for (const std::uint32_t neighbour : inside)
-    {
-      const float weight = 1.0F / (1.0F + unseen_[neighbour]);
-      weights += weight, expected += weight * ground_[neighbour];
-      unseen = std::min(unseen, unseen_[neighbour]);
-    }
-    expected /= weights;
+    const Ground &inside = inner[sector], &left = inner[sector + 1 < kSectors ? sector + 1 : 0],
+                 &right = inner[sector > 0 ? sector - 1 : kSectors - 1];
+    const float weights = inside.weight + left.weight + right.weight;
+    const float expected =
+        (inside.weight * inside.height + left.weight * left.height + right.weight * right.height) / weights;
+    const float unseen = std::min(inside.unseen, std::min(left.unseen, right.unseen));
 
-    const std::uint32_t cell = sector * kBins + bin;
-    const LabelledPoint& low = cloud.points[lowest_[cell].point];
-    const float found = plane_.heightOf(low.x, low.y, low.z);
-    const bool is_face = lowest_[cell].top - lowest_[cell].z > kFace;
-    const float gate = std::min(is_face ? kFaceStep : kMostStep, kNoise + max_slope * (unseen + step));
-    const bool seen = lowest_[cell].z != kFar && std::abs(found - expected) < gate;
+    const std::uint32_t cell = PolarGrid::cell(bin, sector);
+    const Lowest& lowest = lowest_[cell];
     expected_[sector] = expected;
-    ground_[cell] = seen ? found : expected;
-    distance_[cell] = seen ? std::hypot(low.x, low.y) : kGrid.middle[bin];
-    unseen_[cell] = seen ? 0.0F : unseen + step;
+    ground_[cell] = {expected, middle, unseen + step, 1.0F / (1.0F + unseen + step)};
+    if (lowest.z == kFar) continue;
+    const LabelledPoint& low = cloud.points[lowest.point];
+    const float found = plane_.heightOf(low.x, low.y, low.z);
+    const bool is_face = lowest.top - lowest.z > kFace;
+    const float gate = std::min(is_face ? kFaceStep : kMostStep, kNoise + max_slope * (unseen + step));
+    if (std::abs(found - expected) < gate) ground_[cell] = {found, returns[lowest.point].range, 0.0F, 1.0F};
   }
 }
 
@@ -253,10 +161,14 @@ void GroundSurface::refuseIslands(std::uint32_t bin)
 {
   constexpr float kRise = 0.2F;    // [m] a sill hangs as high at least
   constexpr float kWidest = 6.0F;  // [m] a car and a cell
-  const float width = kGrid.middle[bin] * 2.0F * 3.14159265F / kSectors;
-  const auto cellOf = [&](std::uint32_t sector) { return sector % kSectors * kBins + bin; };
+  const float middle = kGrid.middleOf(bin), step = middle - kGrid.middleOf(bin - 1);
+  const float width = middle * 2.0F * 3.14159265F / kSectors;
+  Ground* const here = &ground_[PolarGrid::cell(bin, 0)];
   const auto rises = [&](std::uint32_t sector)
-  { return unseen_[cellOf(sector)] == 0.0F && ground_[cellOf(sector)] - expected_[sector % kSectors] > kRise; };
+  {
+    const std::uint32_t s = sector < kSectors ? sector : sector - kSectors;
+    return here[s].unseen == 0.0F && here[s].height - expected_[s] > kRise;
+  };
   const auto widest = std::min(kSectors - 1, static_cast<std::uint32_t>(kWidest / width));
   for (std::uint32_t begin = 0; begin < kSectors; ++begin)
   {
@@ -264,12 +176,11 @@ void GroundSurface::refuseIslands(std::uint32_t bin)
     std::uint32_t end = begin;
     while (end - begin <= widest && rises(end)) ++end;
     if (end - begin > widest) continue;
-    for (std::uint32_t sector = begin; sector < end; ++sector)
+    for (std::uint32_t k = begin; k < end; ++k)
     {
-      const std::uint32_t cell = cellOf(sector), inner = cell - 1;
-      ground_[cell] = expected_[sector % kSectors];
-      distance_[cell] = kGrid.middle[bin];
-      unseen_[cell] = unseen_[inner] + kGrid.middle[bin] - kGrid.middle[bin - 1];
+      const std::uint32_t sector = k % kSectors;
+      const float unseen = ground_[PolarGrid::cell(bin - 1, sector)].unseen + step;
+      here[sector] = {expected_[sector], middle, unseen, 1.0F / (1.0F + unseen)};
     }
   }
 }
@@ -278,14 +189,18 @@ void GroundSurface::bridge()
 {
   for (std::uint32_t sector = 0; sector < kSectors; ++sector)
   {
-    const std::uint32_t begin = sector * kBins;
-    std::uint32_t inner = begin;
-    for (std::uint32_t outer = begin + 1; outer < begin + kBins; ++outer)
+    std::uint32_t inner = 0;
+    for (std::uint32_t outer = 1; outer < kBins; ++outer)
     {
-      if (unseen_[outer] > 0.0F) continue;
-      const float rise = (ground_[outer] - ground_[inner]) / (distance_[outer] - distance_[inner]);
-      for (std::uint32_t cell = inner + 1; cell < outer; ++cell)
-        ground_[cell] = ground_[inner] + rise * (distance_[cell] - distance_[inner]);
+      const Ground& far = ground_[PolarGrid::cell(outer, sector)];
+      if (far.unseen > 0.0F) continue;
+      const Ground& near = ground_[PolarGrid::cell(inner, sector)];
+      for (std::uint32_t bin = inner + 1; bin < outer; ++bin)
+      {
+        Ground& between = ground_[PolarGrid::cell(bin, sector)];
+        const float rise = (far.height - near.height) / (far.distance - near.distance);
+        between.height = near.height + rise * (between.distance - near.distance);
+      }
       inner = outer;
     }
   }
@@ -294,30 +209,43 @@ void GroundSurface::bridge()
 /// No ground but the plane.
 void GroundSurface::flatten()
 {
-  std::fill(ground_.begin(), ground_.end(), 0.0F);
+  for (std::uint32_t bin = 0; bin < kBins; ++bin)
+    std::fill_n(&ground_[PolarGrid::cell(bin, 0)], kSectors,
+                Ground{0.0F, bin == 0 ? 0.0F : kGrid.middleOf(bin), 0.0F, 1.0F});
+}
+
+void GroundSurface::drawLines()
+{
   for (std::uint32_t cell = 0; cell < kCells; ++cell)
-    distance_[cell] = cell % kBins == 0 ? 0.0F : kGrid.middle[cell % kBins];
+  {
+    const Ground& here = ground_[cell];
+    const bool is_last = cell + kSectors >= kCells;
+    const Ground& next = is_last ? here : ground_[cell + kSectors];
+    lines_[cell] = {here.distance, here.height,
+                    is_last ? 0.0F : (next.height - here.height) / (next.distance - here.distance)};
+  }
 }
 
 float GroundSurface::heightOf(float x, float y, float z) const
 {
   const float range = std::sqrt(x * x + y * y);
-  return plane_.heightOf(x, y, z) - groundAt(sectorOf(x, y) * kBins + kGrid.find(range), range);
+  return plane_.heightOf(x, y, z) - groundAt(kGrid.cellOf(x, y, range), range);
 }
 
-void GroundSurface::writeHeights(const LabelledCloud& cloud, std::vector<GroundedReturn>& returns)
+void GroundSurface::writeHeights(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
+                                 std::vector<GroundedReturn>& returns) const
 {
-  for (std::uint32_t cell = 0; cell < kCells; ++cell)
+  const SlopedPlane plane = plane_;
+  for (std::size_t first = begin; first < end; first += 4)
   {
-    const bool is_last = (cell + 1) % kBins == 0;
-    lines_[cell] = {distance_[cell], ground_[cell],
-                    is_last ? 0.0F : (ground_[cell + 1] - ground_[cell]) / (distance_[cell + 1] - distance_[cell])};
-  }
-  for (std::size_t i = 0; i < cloud.points.size(); ++i)
-  {
-    if (cell_of_[i] == kNoCell) continue;
-    const LabelledPoint& p = cloud.points[i];
-    returns[i].height = plane_.heightOf(p.x, p.y, p.z) - groundAt(cell_of_[i], returns[i].range);
+    const FourPoints p(cloud.points.data() + first, end - first);
+    const FourFloats height = p.z - plane.slope_x * p.x - plane.slope_y * p.y - plane.offset;
+    for (int k = 0; k < 4; ++k)
+    {
+      const std::size_t i = first + static_cast<std::size_t>(k);
+      if (i >= end) break;
+      if (cell_of_[i] != kNoCell) returns[i].height = height[k] - groundAt(cell_of_[i], returns[i].range);
+    }
   }
 }
 }  // namespace lidar_panoptic_clustering

@@ -95,6 +95,8 @@ public:
 
 private:
   void judge();
+  void showGround(LabelledCloud& cloud, std::size_t begin, std::size_t end);
+  void showPart(LabelledCloud& cloud, std::uint32_t pixel);
   unsigned char hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
 
   GroundLabelerConfig config_;

@@ -60,10 +60,12 @@ public:
     float step, link;  ///< step <= link
   };
 
-  /// `full_turn`: the last column is the first one's neighbour. Rows may run from the highest beam down or from the
-  /// lowest up.
-  void find(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, const Distances& distances,
-            bool full_turn);
+  /// Begins with a scan of `rows` x `columns`. `full_turn`: the last column is the first one's neighbour.
+  void start(std::uint32_t rows, std::uint32_t columns, const Distances& distances, bool full_turn);
+  /// The rows one after the other, from the highest beam down or from the lowest up.
+  void addRow(std::uint32_t row, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  /// After the last row.
+  void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
 
   /// Numbered by first pixel in row-major order.
   const std::vector<ScanComponent>& parts() const { return parts_; }
@@ -72,6 +74,10 @@ public:
   /// By part.
   const std::vector<std::uint32_t>& componentOfPart() const { return component_of_part_; }
 
+  /// The pixels of the returns above the ground, in row-major order.
+  const std::vector<std::uint32_t>& pixels() const { return pixels_; }
+  /// The pixels of returns on the ground that are the feet of what stands there.
+  const std::vector<std::uint32_t>& feet() const { return feet_; }
   /// The part of a pixel, kNone for those without.
   std::uint32_t partOf(std::size_t pixel) const { return part_of_[pixel]; }
   /// The component of a pixel, kNone for those without.
@@ -85,21 +91,27 @@ private:
   {
     std::uint32_t a, b;
   };
+  class RowLinker;
 
-  void link(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, const Distances& distances,
-            bool full_turn);
-  void gatherParts(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void numberParts();
   void joinParts();
   void examineTops(const LabelledCloud& cloud, bool highest_first);
-  void examineFeet(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float above,
-                   bool highest_first);
-  void examineLines(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
+  void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
+  void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
+  void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
+                  std::int32_t direction);
 
+  std::uint32_t rows_ = 0, columns_ = 0;
+  Distances distances_{};
+  bool full_turn_ = false;
   DisjointSets sets_;
   std::vector<std::uint32_t> part_of_;
-  std::vector<std::uint32_t> pixels_;      ///< of the returns above the ground, in row-major order
-  std::vector<std::uint32_t> row_before_;  ///< by column: the last row of a return above the ground
-  std::vector<Pair> loose_;                ///< runs closer than the link, not the step
+  std::vector<std::uint32_t> pixels_;        ///< of the returns above the ground, in row-major order
+  std::vector<std::uint32_t> begin_of_run_;  ///< in pixels_; a run lies in one row, and the runs one after the other
+  std::vector<std::uint32_t> pixel_before_;  ///< by column: that of the last return above the ground
+  std::vector<std::uint32_t> feet_;
+  std::vector<Pair> loose_;                  ///< runs closer than the link, not the step
   std::vector<std::uint32_t> part_of_run_;
   std::vector<ScanComponent> parts_, components_;
   std::vector<std::uint32_t> component_of_part_;
