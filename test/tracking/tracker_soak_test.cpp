@@ -23,9 +23,15 @@ std::size_t residentBytes()
   return resident * static_cast<std::size_t>(sysconf(_SC_PAGESIZE));
 }
 
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
+constexpr bool kSanitized = true;  // slow, and what was freed is kept for a while
+#else
+constexpr bool kSanitized = false;
+#endif
+
 TEST(TrackerSoak, TenThousandScansTakeNoMoreMemoryThanTwoThousand)
 {
-  constexpr std::uint64_t kScans = 10000, kWarm = 2000;
+  constexpr std::uint64_t kScans = kSanitized ? 1000 : 10000, kWarm = kScans / 5;
   constexpr std::size_t kSlack = 4U << 20U;  // a vector that grows once more
   SensorModel model = SensorModel::load("vlp16");
   model.columns = 180;
@@ -48,10 +54,10 @@ TEST(TrackerSoak, TenThousandScansTakeNoMoreMemoryThanTwoThousand)
     most = std::max(most, tracker.liveTracks());
     if (frame == kWarm) warm = residentBytes();
   }
-  EXPECT_GT(newest, 1000U) << "the drive passes many objects";
+  EXPECT_GT(newest, kScans / 10) << "the drive passes many objects";
   EXPECT_LT(most, 500U);
   EXPECT_GT(warm, 0U);
-  EXPECT_LT(residentBytes(), warm + kSlack);
+  if (!kSanitized) EXPECT_LT(residentBytes(), warm + kSlack);
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering
