@@ -20,8 +20,8 @@ struct Others
 };
 
 template <class Point>
-Others othersAmong(const Point& p, float distance, std::uint32_t object, const float* x, const float* y, const float* z,
-                   const std::uint32_t* objects)
+[[gnu::always_inline]] inline Others othersAmong(const Point& p, float distance, std::uint32_t object, const float* x,
+                                                 const float* y, const float* z, const std::uint32_t* objects)
 {
   using Floats = float __attribute__((vector_size(16)));
   using Ints = std::int32_t __attribute__((vector_size(16)));
@@ -152,21 +152,45 @@ void ScanLineRunClusterer::linkLayer(const Point& p, int shift, Layer& layer, st
     to = static_cast<std::uint32_t>(std::lower_bound(columns + from, columns + layer.end, right) - columns);
   }
   if (from == to) return;
-  const bool is_known = layer.same_begin < layer.same_end && from <= layer.same_end && to >= layer.same_begin &&
-                        sets_.find(lower_.object[layer.same_begin]) == object;
-  bool all = true;
-  if (is_known)
+  const std::uint32_t begin = std::max(from, layer.same_begin), end = std::min(to, layer.same_end);
+  const bool is_beside = layer.same_begin < layer.same_end && begin <= end;  // or among them
+  const bool is_known =
+      is_beside && (sets_.find(lower_.object[layer.same_begin]) == object || joinAny(p, shift, begin, end, object));
+  Stretch same(is_known ? std::min(from, layer.same_begin) : from);
+  if (is_beside)
   {
-    all = linkRange(p, shift, from, std::min(to, layer.same_begin), object);
-    all = linkRange(p, shift, std::max(from, layer.same_end), to, object) && all;
+    linkRange(p, shift, from, begin, object, same);
+    same.add(is_known ? layer.same_end : end, is_known);
+    linkRange(p, shift, end, to, object, same);
   }
   else
   {
-    all = linkRange(p, shift, from, to, object);
+    linkRange(p, shift, from, to, object, same);
   }
-  if (!all) return;
-  layer.same_begin = is_known ? std::min(layer.same_begin, from) : from;
-  layer.same_end = is_known ? std::max(layer.same_end, to) : to;
+  const bool is_longer = same.longestEnd() - same.longestBegin() > layer.same_end - layer.same_begin;
+  if (is_beside && !is_longer) return;
+  layer.same_begin = same.longestBegin(), layer.same_end = same.longestEnd();
+}
+
+/// Joins p with the points [begin, end) of lower_, which are known to be of one object: a close one will do, looked for
+/// from the middle on, where p is. Whether there is one.
+bool ScanLineRunClusterer::joinAny(const Point& p, int shift, std::uint32_t begin, std::uint32_t end,
+                                   std::uint32_t& object)
+{
+  const float distance = std::min(line_distance_, p.link_distance);
+  const std::uint32_t middle = begin + (end - begin) / 2;
+  const auto joins = [&](std::uint32_t from, std::uint32_t to)
+  {
+    for (std::uint32_t k = from; k < to; k += kBlock)
+    {
+      looked_at_ += kBlock;
+      if (!othersAmong(p, distance, object, &lower_.x[k], &lower_.y[k], &lower_.z[k], &lower_.object[k]).near) continue;
+      linkBlock(p, shift, k, std::min(k + kBlock, to), object);
+      if (sets_.find(lower_.object[begin]) == object) return true;
+    }
+    return false;
+  };
+  return joins(middle, end) || joins(begin, middle);
 }
 
 /// The first point of a layer at or right of `column`, looked for from point `k` on, either way.
@@ -177,23 +201,20 @@ std::uint32_t ScanLineRunClusterer::moveTo(int column, const Layer& layer, std::
   return k;
 }
 
-/// Joins p with the close ones among [from, to) of lower_. Returns whether all of these are known to be of p's object
-/// then. A block may end behind the line: what stands there is infinitely far.
-bool ScanLineRunClusterer::linkRange(const Point& p, int shift, std::uint32_t from, std::uint32_t to,
-                                     std::uint32_t& object)
+/// Joins p with the close ones among [from, to) of lower_, and adds to `same` which of these are known to be of p's
+/// object then. A block may end behind the line: what stands there is infinitely far.
+void ScanLineRunClusterer::linkRange(const Point& p, int shift, std::uint32_t from, std::uint32_t to,
+                                     std::uint32_t& object, Stretch& same)
 {
   const float distance = std::min(line_distance_, p.link_distance);
-  bool all = true;
   for (std::uint32_t k = from; k < to; k += kBlock)
   {
     looked_at_ += kBlock;
+    const std::uint32_t end = std::min(k + kBlock, to);
     const Others others = othersAmong(p, distance, object, &lower_.x[k], &lower_.y[k], &lower_.z[k], &lower_.object[k]);
-    if (others.near || (others.any && k + kBlock > to))
-      all = linkBlock(p, shift, k, std::min(k + kBlock, to), object) && all;
-    else if (others.any)
-      all = false;
+    const bool is_looked_at = others.near || (others.any && k + kBlock > to);
+    same.add(end, is_looked_at ? linkBlock(p, shift, k, end, object) : !others.any);
   }
-  return all;
 }
 
 /// The same for points [begin, end) of one block, one after the other.

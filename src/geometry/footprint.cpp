@@ -45,6 +45,8 @@ int Footprint::corners(Polygon& polygon) const
 {
   // counter-clockwise from +x: +x, +(x + y), +y, -(x - y), -x, -(x + y), -y, +(x - y)
   constexpr int kOrder[] = {0, 2, 1, 7, 4, 6, 5, 3};
+  polygon[0] = point_[0];
+  if (min_[0] == max_[0] && min_[1] == max_[1]) return 1;
   int n = 0;
   for (const int k : kOrder)
   {

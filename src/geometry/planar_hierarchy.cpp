@@ -260,12 +260,13 @@ void PlanarHierarchy::linkTiles(int level, int reach, float distance)
 void PlanarHierarchy::lookAt(const Tile& tile, int level, int row, int column)
 {
   std::uint32_t cell = tile.first_cell;
-  const int side = kSide >> level, blocks = side * side, cells = 1 << (2 * level);
+  const int cells = 1 << (2 * level);
   const std::uint64_t mask = (std::uint64_t{1} << cells) - 1;
-  for (int block = 0; block < blocks; ++block)
+  for (std::uint64_t left = tile.occupied; left != 0;)
   {
-    const std::uint64_t occupied = tile.occupied >> (block * cells) & mask;
-    if (occupied == 0) continue;
+    const int block = __builtin_ctzll(left) >> (2 * level);
+    const std::uint64_t occupied = left >> (block * cells) & mask;
+    left &= ~(mask << (block * cells));
     const CurvePlace at = kCurve.of[block];
     Window& window = window_[row + at.y][column + at.x];
     window.block.begin = cell;

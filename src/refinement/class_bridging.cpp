@@ -40,22 +40,29 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
   by_min_x_.clear();
   for (std::uint32_t k = 0; k < objects.size(); ++k) by_min_x_.push_back({objects[k].footprint.minX(), k});
   std::sort(by_min_x_.begin(), by_min_x_.end(), [](const Start& a, const Start& b) { return a.min_x < b.min_x; });
+  extents_.clear();
+  for (const Start& start : by_min_x_)
+  {
+    const RefinedObject& object = objects[start.object];
+    const Footprint& f = object.footprint;
+    extents_.push_back({f.maxX(), f.minY(), f.maxY(), table[object.class_index].group});
+  }
 
   bool found = false;
   std::size_t pairs_left = kMostPairs * objects.size();
   for (std::size_t i = 0; i < by_min_x_.size(); ++i)
   {
-    const RefinedObject& a = objects[by_min_x_[i].object];
+    const Extent& mine = extents_[i];
     for (std::size_t j = i + 1; j < by_min_x_.size(); ++j)
     {
-      if (by_min_x_[j].min_x - a.footprint.maxX() >= distance) break;
-      const RefinedObject& b = objects[by_min_x_[j].object];
+      if (by_min_x_[j].min_x - mine.max_x >= distance) break;
       if (pairs_left-- == 0)
       {
         reach_.assign(objects.size(), {-kFar, kFar, -kFar, kFar});
         return true;
       }
-      if (table[a.class_index].group != table[b.class_index].group) continue;
+      if (!mine.mayBeCloser(extents_[j], distance)) continue;
+      const RefinedObject &a = objects[by_min_x_[i].object], &b = objects[by_min_x_[j].object];
       if (!a.footprint.mayBeCloser(b.footprint, distance)) continue;
       reach_[by_min_x_[i].object].add(b.footprint, distance);
       reach_[by_min_x_[j].object].add(a.footprint, distance);

@@ -134,15 +134,18 @@ void PartMerger::sortObjects(const std::vector<RefinedObject>& objects)
   const auto place = [&objects](std::uint32_t i)
   {
     const RefinedObject& o = objects[i];
-    return std::make_tuple(o.footprint.minX(), o.footprint.minY(), o.footprint.maxX(), o.footprint.maxY(),
-                           o.point_count, i);
+    return std::make_tuple(o.footprint.maxX(), o.footprint.maxY(), o.point_count, i);
   };
-  // by the first of these alone, which lies in the entry sorted; by all where it is the same
+  // these are looked at only where the corner is the same
   by_min_x_.clear();
-  for (std::uint32_t i = 0; i < objects.size(); ++i) by_min_x_.push_back({objects[i].footprint.minX(), i});
+  for (std::uint32_t i = 0; i < objects.size(); ++i)
+    by_min_x_.push_back({objects[i].footprint.minX(), objects[i].footprint.minY(), i});
   std::sort(by_min_x_.begin(), by_min_x_.end(),
             [&place](const Start& a, const Start& b)
-            { return a.min_x != b.min_x ? a.min_x < b.min_x : place(a.object) < place(b.object); });
+            {
+              if (a.min_x != b.min_x) return a.min_x < b.min_x;
+              return a.min_y != b.min_y ? a.min_y < b.min_y : place(a.object) < place(b.object);
+            });
   order_.clear();
   for (const Start& start : by_min_x_) order_.push_back(start.object);
   sorted_.clear();

@@ -71,6 +71,13 @@ TEST(WorkBounds, scanLineRunComparesAPointWithTwoWindows)
   expectBounded<ScanLineRunClusterer>(config.max_line_gap * (2.0 * config.max_window_px + 16.0 + 8.0));
 }
 
+TEST(WorkBounds, ofPointsKnownToBeOneObjectOneIsEnough)
+{
+  // with every point of the window it is five times as many
+  for (const WorstScan& worst : worstScans())
+    if (worst.name == "runs_of_one") EXPECT_LE(workOf<ScanLineRunClusterer>(worst, 32, 2048, "class"), 60.0);
+}
+
 TEST(WorkBounds, birdsEyeLooksAtAPointAFewTimesForEachCellAround)
 {
   expectBounded<BirdsEyeClusterer>(24.0 * 6.0);

@@ -79,6 +79,25 @@ private:
     std::uint32_t from, to;                    ///< the window of the point looked at last
   };
 
+  /// The longest stretch of points of one object among neighbouring ranges that are added one after the other.
+  class Stretch
+  {
+  public:
+    explicit Stretch(std::uint32_t begin) : begin_(begin), end_(begin), longest_begin_(begin), longest_end_(begin) {}
+    /// The points up to `end`: whether all are of the object.
+    void add(std::uint32_t end, bool are_same)
+    {
+      end_ = end;
+      if (!are_same) begin_ = end;
+      if (end_ - begin_ > longest_end_ - longest_begin_) longest_begin_ = begin_, longest_end_ = end_;
+    }
+    std::uint32_t longestBegin() const { return longest_begin_; }
+    std::uint32_t longestEnd() const { return longest_end_; }
+
+  private:
+    std::uint32_t begin_, end_, longest_begin_, longest_end_;
+  };
+
   void sortByLink(const ThingScan& scan);
   void findRuns(const ThingScan& scan);
   void joinOverTheWrap();
@@ -90,7 +109,8 @@ private:
   void linkPoint(const Point& p, int shift);
   void linkLayer(const Point& p, int shift, Layer& layer, std::uint32_t& object);
   std::uint32_t moveTo(int column, const Layer& layer, std::uint32_t k) const;
-  bool linkRange(const Point& p, int shift, std::uint32_t from, std::uint32_t to, std::uint32_t& object);
+  bool joinAny(const Point& p, int shift, std::uint32_t begin, std::uint32_t end, std::uint32_t& object);
+  void linkRange(const Point& p, int shift, std::uint32_t from, std::uint32_t to, std::uint32_t& object, Stretch& same);
   bool linkBlock(const Point& p, int shift, std::uint32_t begin, std::uint32_t end, std::uint32_t& object);
 
   ScanLineRunConfig config_;

@@ -39,6 +39,16 @@ private:
     float min_x;
     std::uint32_t object;
   };
+  /// What tells most pairs of objects apart, without a look at these.
+  struct Extent
+  {
+    float max_x, min_y, max_y;
+    std::uint32_t group;
+    bool mayBeCloser(const Extent& other, float distance) const
+    {
+      return group == other.group && min_y - other.max_y < distance && other.min_y - max_y < distance;
+    }
+  };
 
   bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
   void sortByGroup(const ThingScan& scan, const ClassTable& table, const std::vector<RefinedObject>& objects,
@@ -47,6 +57,7 @@ private:
                   const std::vector<std::uint32_t>& object_of_thing);
 
   std::vector<Start> by_min_x_;                              ///< objects
+  std::vector<Extent> extents_;                              ///< parallel to by_min_x_
   std::vector<Reach> reach_;                                 ///< by object
   std::vector<std::vector<std::uint32_t>> things_of_group_;  ///< within reach of another object
   PlanarHierarchy cells_;                                    ///< of a group's

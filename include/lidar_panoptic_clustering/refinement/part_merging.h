@@ -55,7 +55,7 @@ private:
   };
   struct Start
   {
-    float min_x;
+    float min_x, min_y;
     std::uint32_t object;
   };
   struct Entry
