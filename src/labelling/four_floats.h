@@ -14,10 +14,16 @@ namespace lidar_panoptic_clustering
 using FourFloats = float __attribute__((vector_size(16)));
 using FourInts = std::int32_t __attribute__((vector_size(16)));
 
-inline FourFloats broadcast(float value) { return FourFloats{value, value, value, value}; }
+inline FourFloats broadcast(float value)
+{
+  return FourFloats{value, value, value, value};
+}
 
 /// Towards zero; the values are those of whole numbers of 32 bits, or the result is any.
-inline FourInts truncated(const FourFloats& values) { return __builtin_convertvector(values, FourInts); }
+inline FourInts truncated(const FourFloats& values)
+{
+  return __builtin_convertvector(values, FourInts);
+}
 
 /// By lane `a` where the mask is -1, `b` where it is 0.
 inline FourFloats select(const FourInts& mask, const FourFloats& a, const FourFloats& b)

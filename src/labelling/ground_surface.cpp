@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace lidar_panoptic_clustering
@@ -12,27 +13,35 @@ namespace
 {
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = std::numeric_limits<float>::infinity();
-constexpr std::uint16_t kNoCell = 0xFFFF;
 constexpr std::uint32_t kBins = PolarGrid::kBins, kCells = PolarGrid::kCells;
+constexpr std::uint32_t kNoCell = kCells;  // where what is no return goes, so that nothing has to be asked a point
 
 const PolarGrid kGrid;
 
-/// Coordinates of four points, of fewer where a cloud ends: then the last one's again.
+/// Coordinates of four points.
 struct FourPoints
 {
-  FourPoints(const LabelledPoint* points, std::size_t count)
+  explicit FourPoints(const LabelledPoint* p)
+      : x{p[0].x, p[1].x, p[2].x, p[3].x}, y{p[0].y, p[1].y, p[2].y, p[3].y}, z{p[0].z, p[1].z, p[2].z, p[3].z}
   {
-    const std::size_t last = std::min<std::size_t>(count, 4) - 1;
-    const LabelledPoint &a = points[0], &b = points[std::min<std::size_t>(last, 1)],
-                        &c = points[std::min<std::size_t>(last, 2)], &d = points[last];
-    x = FourFloats{a.x, b.x, c.x, d.x}, y = FourFloats{a.y, b.y, c.y, d.y}, z = FourFloats{a.z, b.z, c.z, d.z};
   }
 
   FourFloats x, y, z;
 };
+
+/// Ranges and cells of four points.
+inline void locate(const LabelledPoint* points, float max_squared_range, GroundedReturn* returns, std::uint16_t* cells)
+{
+  const FourPoints p(points);
+  const FourFloats squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
+  const FourInts is_return = (squared > 0.0F) & (whole <= max_squared_range);  // not NaN and infinity
+  const FourFloats range = select(is_return, squareRoot(squared), broadcast(kNaN));
+  kGrid.cellsOf(p.x, p.y, range, is_return, cells);
+  for (int k = 0; k < 4; ++k) returns[k] = {range[k], kNaN};
+}
 }  // namespace
 
-GroundSurface::GroundSurface() : lowest_(kCells), ground_(kCells), expected_(kSectors), lines_(kCells)
+GroundSurface::GroundSurface() : lowest_(kCells + 1), ground_(kCells), expected_(kSectors), lines_(kCells + 1)
 {
   static_assert(kSectors == PolarGrid::kSectors);
 }
@@ -57,41 +66,33 @@ void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m,
 {
   const float max_squared_range = max_range_m * max_range_m;
   const std::size_t size = cloud.points.size();
-  lowest_.assign(kCells, {kFar, 0, -kFar});
+  lowest_.assign(kCells + 1, {kFar, 0, -kFar});
   cell_of_.resize(size);
   returns.resize(size);
-  std::uint32_t open = 0;  // neighbours share a cell: it is kept at hand until the next one
-  Lowest low = lowest_[open];
-  for (std::size_t first = 0; first < size; first += 4)
+  std::size_t i = 0;
+  for (; i + 4 <= size; i += 4) locate(&cloud.points[i], max_squared_range, &returns[i], &cell_of_[i]);
+  if (i < size)
   {
-    const FourPoints p(cloud.points.data() + first, size - first);
-    const FourFloats squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
-    const FourInts is_return = (squared > 0.0F) & (whole <= max_squared_range);  // not NaN and infinity
-    const FourFloats range = select(is_return, squareRoot(squared), broadcast(kNaN));
-    std::uint32_t cells[4];
-    kGrid.cellsOf(p.x, p.y, range, cells);
-    for (int k = 0; k < 4; ++k)
-    {
-      const std::size_t i = first + static_cast<std::size_t>(k);
-      if (i >= size) break;
-      returns[i] = {range[k], kNaN};
-      const std::uint32_t cell = is_return[k] != 0 ? cells[k] : kNoCell;
-      cell_of_[i] = static_cast<std::uint16_t>(cell);
-      if (cell == kNoCell) continue;
-      if (cell != open)
-      {
-        lowest_[open] = low;
-        open = cell;
-        low = lowest_[open];
-      }
-      const float z = p.z[k];
-      const bool lower = z < low.z;  // without a branch: no predictor knows which return is lower
-      low.z = lower ? z : low.z;
-      low.top = std::max(low.top, z);
-      low.point = lower ? static_cast<std::uint32_t>(i) : low.point;
-    }
+    LabelledPoint rest[4];
+    std::copy(cloud.points.begin() + static_cast<std::ptrdiff_t>(i), cloud.points.end(), rest);
+    GroundedReturn rest_returns[4];
+    std::uint16_t rest_cells[4];
+    locate(rest, max_squared_range, rest_returns, rest_cells);
+    std::copy_n(rest_returns, size - i, &returns[i]);
+    std::copy_n(rest_cells, size - i, &cell_of_[i]);
   }
-  lowest_[open] = low;
+  Lowest* const lowest = lowest_.data();
+  for (i = 0; i < size; ++i)
+  {
+    Lowest& low = lowest[cell_of_[i]];
+    const float z = cloud.points[i].z;
+    // without a branch: no predictor knows which return is lower
+    const std::uint32_t is_lower = 0U - static_cast<std::uint32_t>(z < low.z);
+    low.z = std::min(low.z, z);
+    low.top = std::max(low.top, z);
+    low.point = (static_cast<std::uint32_t>(i) & is_lower) | (low.point & ~is_lower);
+  }
+  lowest_[kNoCell] = {kFar, 0, -kFar};
 }
 
 bool GroundSurface::findPlane(const LabelledCloud& cloud)
@@ -216,6 +217,7 @@ void GroundSurface::flatten()
 
 void GroundSurface::drawLines()
 {
+  lines_[kNoCell] = {0.0F, 0.0F, 0.0F};
   for (std::uint32_t cell = 0; cell < kCells; ++cell)
   {
     const Ground& here = ground_[cell];
@@ -236,16 +238,15 @@ void GroundSurface::writeHeights(const LabelledCloud& cloud, std::size_t begin, 
                                  std::vector<GroundedReturn>& returns) const
 {
   const SlopedPlane plane = plane_;
-  for (std::size_t first = begin; first < end; first += 4)
+  const auto write = [&](std::size_t i, float height)  // NaN where the range is
+  { returns[i].height = height - groundAt(cell_of_[i], returns[i].range); };
+  std::size_t i = begin;
+  for (; i + 4 <= end; i += 4)
   {
-    const FourPoints p(cloud.points.data() + first, end - first);
+    const FourPoints p(&cloud.points[i]);
     const FourFloats height = p.z - plane.slope_x * p.x - plane.slope_y * p.y - plane.offset;
-    for (int k = 0; k < 4; ++k)
-    {
-      const std::size_t i = first + static_cast<std::size_t>(k);
-      if (i >= end) break;
-      if (cell_of_[i] != kNoCell) returns[i].height = height[k] - groundAt(cell_of_[i], returns[i].range);
-    }
+    for (int k = 0; k < 4; ++k) write(i + static_cast<std::size_t>(k), height[k]);
   }
+  for (; i < end; ++i) write(i, plane.heightOf(cloud.points[i].x, cloud.points[i].y, cloud.points[i].z));
 }
 }  // namespace lidar_panoptic_clustering

@@ -24,13 +24,15 @@ public:
   {
     std::uint32_t bin = 0;
     float begin = 0.0F;
+    cell_of_step_.back() = kCells;
     for (const Zone& zone : kZones)
       for (; begin < zone.end; begin += zone.width, ++bin)
       {
         middle_[bin] = begin + 0.5F * zone.width;
         const auto first = static_cast<std::size_t>(begin / kFinest);
         const auto last = static_cast<std::size_t>((begin + zone.width) / kFinest);
-        for (std::size_t step = first; step < last; ++step) cell_of_step_[step] = static_cast<std::uint16_t>(cell(bin, 0));
+        for (std::size_t step = first; step < last; ++step)
+          cell_of_step_[step] = static_cast<std::uint16_t>(cell(bin, 0));
       }
   }
 
@@ -46,17 +48,18 @@ public:
     return cell_of_step_[std::min<std::size_t>(step, kSteps - 1)] + sectorOf(x, y);
   }
 
-  /// The same of four places at once; of a range that is NaN any cell.
-  void cellsOf(const FourFloats& x, const FourFloats& y, const FourFloats& range, std::uint32_t (&cells)[4]) const
+  /// The same of four places at once; kCells where `is_place` is 0.
+  void cellsOf(const FourFloats& x, const FourFloats& y, const FourFloats& range, const FourInts& is_place,
+               std::uint16_t* cells) const
   {
     const FourFloats turn = y / (absolute(x) + absolute(y));
     const FourFloats quarters = select(x >= 0.0F, 1.0F + turn, 3.0F - turn);
-    const FourFloats last = broadcast(kSteps - 1), scaled = range / kFinest;
-    const FourInts step = truncated(select(scaled < last, scaled, last));
-    const FourInts sector = truncated(quarters * (0.25F * kSectors));
+    const FourFloats beyond = broadcast(kSteps - 1), last = broadcast(kSectors - 1), none = broadcast(kSteps);
+    const FourFloats scaled = range / kFinest, around = quarters * (0.25F * kSectors);
+    const FourInts step = truncated(select(is_place, select(scaled < beyond, scaled, beyond), none));
+    const FourInts sector = truncated(select(around < last, around, last)) & is_place;
     for (int k = 0; k < 4; ++k)
-      cells[k] = cell_of_step_[static_cast<std::size_t>(step[k])] +
-                 std::min(kSectors - 1, static_cast<std::uint32_t>(sector[k]));
+      cells[k] = static_cast<std::uint16_t>(cell_of_step_[static_cast<std::uint32_t>(step[k])] + sector[k]);
   }
 
 private:
@@ -77,6 +80,6 @@ private:
   }
 
   std::array<float, kBins> middle_{};
-  std::array<std::uint16_t, kSteps> cell_of_step_{};  ///< the first of the bin
+  std::array<std::uint16_t, kSteps + 1> cell_of_step_{};  ///< the first of the bin; last of all kCells
 };
 }  // namespace lidar_panoptic_clustering

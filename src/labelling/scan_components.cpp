@@ -1,6 +1,7 @@
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 
 #include <cmath>
+#include <cstring>
 #include <utility>
 
 namespace lidar_panoptic_clustering
@@ -17,7 +18,10 @@ enum class Tie
   kTight   ///< within the step, or on one surface
 };
 
-float squaredNorm(float x, float y, float z) { return x * x + (y * y + z * z); }
+float squaredNorm(float x, float y, float z)
+{
+  return x * x + (y * y + z * z);
+}
 
 inline Tie tieOf(const LabelledPoint& a, const LabelledPoint& b, float squared_step, float squared_link)
 {
@@ -58,7 +62,9 @@ void ScanComponents::start(std::uint32_t rows, std::uint32_t columns, const Dist
 {
   rows_ = rows, columns_ = columns, distances_ = distances, full_turn_ = full_turn;
   sets_.reset(0);
-  part_of_.assign(std::size_t{rows} * columns, kNone);
+  part_of_.resize(std::size_t{rows} * columns);
+  static_assert(kNone == 0xFFFFFFFF);  // in bytes: several times as fast
+  if (!part_of_.empty()) std::memset(part_of_.data(), 0xFF, part_of_.size() * sizeof(part_of_[0]));
   pixels_.clear();
   begin_of_run_.clear();
   loose_.clear();
@@ -74,8 +80,12 @@ void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<Ground
   examineTops(cloud, highest_first);
   examineFeet(returns, highest_first);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run) measureRun(cloud, returns, run);
-  components_.assign(component_count_, {});
-  for (std::uint32_t part = 0; part < parts_.size(); ++part) components_[component_of_part_[part]].add(parts_[part]);
+  components_.clear();
+  for (std::uint32_t part = 0; part < parts_.size(); ++part)
+    if (component_of_part_[part] == components_.size())  // numbered by first part
+      components_.push_back(parts_[part]);
+    else
+      components_[component_of_part_[part]].add(parts_[part]);
 }
 
 /// Runs of neighbours along a line are one from the start; each pair of runs, one below the other, is tried until it

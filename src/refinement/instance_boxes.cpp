@@ -1,7 +1,11 @@
 #include "lidar_panoptic_clustering/refinement/instance_boxes.h"
 
+#include "lidar_panoptic_clustering/geometry/footprint.h"
+
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <cstddef>
 #include <limits>
 
 namespace lidar_panoptic_clustering
@@ -56,9 +60,43 @@ void InstanceBoxes::groupByInstance(const ThingScan& scan, const Instances& inst
   }
 }
 
+/// Moves the points that may be corners of the hull to the front, and returns their end: those that do not lie inside
+/// of the polygon of the farthest ones in eight directions, by more than what rounding may make of them.
+InstanceBoxes::Point* InstanceBoxes::dropInside(Point* begin, Point* end)
+{
+  constexpr std::ptrdiff_t kFewest = 24;  // below, sorting is as quick
+  if (end - begin < kFewest) return end;
+  Footprint outline;
+  for (const Point* p = begin; p != end; ++p) outline.add(p->x, p->y);
+  std::array<PlanarPoint, 2 * Footprint::kAxes> corner;
+  const int n = outline.corners(corner);
+  if (n < 3) return end;
+  struct Side
+  {
+    float x, y, dx, dy;
+  };
+  std::array<Side, 2 * Footprint::kAxes> sides;
+  for (int k = 0; k < n; ++k)
+  {
+    const PlanarPoint &a = corner[k], &b = corner[(k + 1) % n];
+    sides[k] = {a.x, a.y, b.x - a.x, b.y - a.y};
+  }
+  const float extent = outline.maxX() - outline.minX() + outline.maxY() - outline.minY();
+  const float margin = 1e-6F * extent * extent;  // four times the error of the products
+  return std::remove_if(begin, end,
+                        [&](const Point& p)
+                        {
+                          for (int k = 0; k < n; ++k)
+                            if (!(sides[k].dx * (p.y - sides[k].y) - sides[k].dy * (p.x - sides[k].x) > margin))
+                              return false;
+                          return true;
+                        });
+}
+
 /// Andrew's monotone chain.
 void InstanceBoxes::findHull(Point* begin, Point* end)
 {
+  end = dropInside(begin, end);
   std::sort(begin, end);
   hull_.clear();
   const auto add = [this](const Point& p, std::size_t kept)

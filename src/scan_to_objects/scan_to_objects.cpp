@@ -36,7 +36,7 @@ void ScanToObjects::process(const RawCloud& cloud)
   if (labels_ != "none") require("field");
   organizer_.organize(cloud, scan_);
   if (labels_ == "none")
-    labeller_.takeGeometry(scan_, true);
+    labeller_.takeGeometry(scan_, !scan_.organized_input);  // else the pixels' labels are the points'
   else
     labeller_.takeOwn(scan_);
   find();

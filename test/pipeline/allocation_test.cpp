@@ -1,8 +1,11 @@
 // Once it has seen scans of the kind, the way of a scan allocates nothing, the output included where it comes from a
 // pool.
 #include "scan_fixture.h"
+#include "unordered_clouds.h"
 
+#include "lidar_panoptic_clustering/labelling/ground_labeler.h"
 #include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
+#include "lidar_panoptic_clustering/scan_to_objects/scan_to_objects.h"
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
 #include "lidar_panoptic_clustering/tracking/cloud_tracker.h"
 
@@ -11,6 +14,9 @@
 #include <atomic>
 #include <cstddef>
 #include <cstring>
+#include <numeric>
+#include <string>
+#include <vector>
 
 #if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
 #define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 0
@@ -165,6 +171,75 @@ TEST(TrackingSteadyState, AllocatesOnlyTheOutput)
   work(true);
   EXPECT_LE(allocations, before + 10 * scans.size()) << "with fresh outputs";
 }
+
+TEST(LabellingSteadyState, rowsAllocateNothing)
+{
+  if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+  auto scans = streetScans();
+  GroundLabeler labeler{GroundLabelerConfig{}};
+  for (auto& scan : scans) labeler.label(scan);
+  const std::size_t before = allocations;
+  for (auto& scan : scans) labeler.label(scan);
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(labeler.foundGround());
+}
+
+TEST(LabellingSteadyState, pointsInNoOrderAllocateNothing)
+{
+  if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+  std::vector<std::vector<ScanPoint>> clouds;
+  for (const auto& scan : streetScans())
+  {
+    clouds.emplace_back();
+    for (const auto& p : scan.points) clouds.back().push_back({p.x, p.y, p.z, 0.0F});
+  }
+  GroundLabeler labeler{GroundLabelerConfig{}};
+  std::vector<std::uint32_t> labels;
+  for (const auto& cloud : clouds) labeler.labelUnordered(cloud, labels);
+  const std::size_t before = allocations;
+  for (const auto& cloud : clouds) labeler.labelUnordered(cloud, labels);
+  EXPECT_EQ(allocations, before);
+  EXPECT_TRUE(labeler.foundGround());
+}
+
+/// From the driver's cloud to objects, boxes and the way back to its points, without a network.
+class ChainSteadyState : public testing::TestWithParam<const char*>
+{
+};
+
+TEST_P(ChainSteadyState, theWayWithoutANetworkAllocatesNothing)
+{
+  if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+  std::vector<RawMessage> messages;
+  for (const auto& scan : streetScans())
+  {
+    std::vector<std::uint32_t> all(scan.size());
+    std::iota(all.begin(), all.end(), 0U);
+    messages.push_back(oneRow(scan, all, Rings::kFromTheTop));
+    if (GetParam() == std::string("ring")) continue;
+    auto& header = messages.back().header;
+    header.height = scan.height, header.width = scan.width, header.row_step = scan.width * header.point_step;
+    if (GetParam() == std::string("firings")) messages.back() = transposed(messages.back());
+  }
+  std::vector<RawCloud> clouds;
+  for (const auto& message : messages) clouds.push_back(message.view());
+  ScanToObjectsConfig config;
+  config.labeller.labels = "none";
+  ScanToObjects chain(config);
+  const auto work = [&]
+  {
+    for (const auto& cloud : clouds) chain.process(cloud);
+  };
+  work();
+  work();  // colours look back one scan
+  const std::size_t before = allocations;
+  work();
+  EXPECT_EQ(allocations, before);
+  EXPECT_GT(chain.instances().count(), 0U);
+}
+
+INSTANTIATE_TEST_SUITE_P(Layouts, ChainSteadyState, testing::Values("rings", "firings", "ring"),
+                         [](const auto& test) { return test.param; });
 
 TEST_P(SteadyState, withAPoolOfOutputsNothingIsAllocated)
 {

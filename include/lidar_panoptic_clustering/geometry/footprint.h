@@ -82,9 +82,12 @@ public:
   /// Whether the segment from a to b meets the outline.
   bool isCrossedBy(const PlanarPoint& a, const PlanarPoint& b) const;
 
+  static constexpr int kAxes = 4;  ///< x, y and the two diagonals
+  /// The distinct corners, counter-clockwise; returns how many.
+  int corners(std::array<PlanarPoint, 2 * kAxes>& polygon) const;
+
 private:
   friend class OrderedFootprint;
-  static constexpr int kAxes = 4;  // x, y and the two diagonals
   static constexpr float kFar = std::numeric_limits<float>::infinity();
 
   bool isOutside(const float (&along)[kAxes]) const
@@ -108,9 +111,6 @@ private:
       if (along[k] < min_[k]) min_[k] = along[k], point_[kAxes + k] = point;
     }
   }
-
-  /// The distinct corners, counter-clockwise; returns how many.
-  int corners(std::array<PlanarPoint, 2 * kAxes>& polygon) const;
 
   float max_[kAxes] = {-kFar, -kFar, -kFar, -kFar};
   float min_[kAxes] = {kFar, kFar, kFar, kFar};

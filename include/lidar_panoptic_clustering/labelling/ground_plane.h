@@ -19,8 +19,8 @@ struct LowReturn
   float x, y, z;  ///< [m], sensor frame
 };
 
-/// The plane that most of the lowest returns around a sensor lie on: a vote over slopes of up to 12 degrees each way and
-/// offsets down to 12 m below the sensor, then least squares through what lies near it, four times.
+/// The plane that most of the lowest returns around a sensor lie on: a vote over slopes of up to 12 degrees each way
+/// and offsets down to 12 m below the sensor, then least squares through what lies near it, four times.
 ///
 /// Returns whether it may be the ground: ten returns at least, and a tenth of them, lie on it, and it is below the
 /// sensor (above it is the ground of a sensor that stands on its head). Linear in the returns.

@@ -22,9 +22,10 @@ struct GroundedReturn
 /// The ground around the sensor, from a scan without labels: a height in each cell of a polar grid.
 ///
 /// 1. The lowest return of each cell stands for it. 2. A plane is found among those within 20 m (see
-/// findGroundPlane); it takes in how the sensor is mounted, height and tilt (up to 12 degrees each way). 3. From under the sensor the ground is followed outwards: a cell's lowest return is ground where a slope of `max_slope`
-/// against the plane leads to it from the cells inside and beside; where there is none, the ground goes on as it was.
-/// What rises within a cell is ground only where it begins: the sill of a car behind metres without ground is none.
+/// findGroundPlane); it takes in how the sensor is mounted, height and tilt (up to 12 degrees each way). 3. From under
+/// the sensor the ground is followed outwards: a cell's lowest return is ground where a slope of `max_slope` against
+/// the plane leads to it from the cells inside and beside; where there is none, the ground goes on as it was. What
+/// rises within a cell is ground only where it begins: the sill of a car behind metres without ground is none.
 /// 4. Cells without ground of their own lie on the line between the nearest seen inside and outside of them.
 ///
 /// After Himmelsbach et al. 2010 ("Fast segmentation of 3D point clouds for ground vehicles", IV), with neighbouring
@@ -87,7 +88,8 @@ private:
   /// On the line between the grounds of two cells; beyond the last one as there.
   float groundAt(std::uint32_t cell, float range) const
   {
-    const Line& line = range < lines_[cell].distance ? lines_[cell - kSectors] : lines_[cell];  // the first's is at 0 m
+    const std::uint32_t is_inside = range < lines_[cell].distance ? 1U : 0U;  // the first bin has its at 0 m
+    const Line& line = lines_[cell - is_inside * kSectors];
     return line.ground + line.rise * (range - line.distance);
   }
 

@@ -32,6 +32,8 @@ public:
                  std::vector<std::uint32_t>& instance);
 
 private:
+  static void copyPixels(const Projection& image, const PanopticCloud& clustered, std::vector<std::uint32_t>& label,
+                         std::vector<std::uint32_t>& instance);
   void takeVotes(const OrganizedScan& scan, const PanopticCloud& clustered);
 
   std::shared_ptr<const ClassTable> table_;

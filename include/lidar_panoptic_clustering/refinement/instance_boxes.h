@@ -19,7 +19,8 @@ struct InstanceBox
 /// The smallest box about each instance: in bird's-eye view the rectangle of least area around its points (one of its
 /// sides lies along a side of the convex hull: Freeman and Shapira 1975), in height from the lowest to the highest.
 ///
-/// n log n in an instance's points; keeps its memory between scans.
+/// Points inside of the outline in eight directions are left out first (Akl and Toussaint 1978), so that hardly any is
+/// sorted; n log n in those that are not. Keeps its memory between scans.
 class InstanceBoxes
 {
 public:
@@ -34,6 +35,7 @@ private:
   };
 
   void groupByInstance(const ThingScan& scan, const Instances& instances);
+  static Point* dropInside(Point* begin, Point* end);
   void findHull(Point* begin, Point* end);
   void fitRectangle(InstanceBox& box) const;
 

@@ -54,11 +54,12 @@ public:
   /// Parallel to instances().objects; sensor frame.
   const std::vector<InstanceBox>& boxes() const { return *boxes_; }
 
-  /// The organised scan and the painted image, with `kNone`-owned pixels as NaN; milliseconds a stage.
+  /// The organised scan (its points' classes are those of labels(), not its own) and the painted image, with
+  /// `kNone`-owned pixels as NaN; milliseconds a stage.
   const OrganizedScan& scan() const { return scan_; }
-  /// Painted.
+  /// The painted image; pixels that no point owns are NaN.
   const PanopticCloud& image() const { return image_; }
-  /// Of the scan processed last, from select to paint.
+  /// Milliseconds of the scan processed last, from select to paint.
   const StageTimes& times() const { return pipeline_.times(); }
 
   /// Of the labels that go out.
