@@ -59,14 +59,15 @@ private:
   std::size_t next_ = 0;
 };
 
-/// The whole of a row: `work(i)` is the i-th time. Counters: `copies`, the median in plain copies measured before and
-/// after it; `copies_least`, the least of both.
+/// The whole of a row: `work(i)` is the i-th time, after three that are not measured, in which buffers grow. Counters:
+/// `copies`, the median in plain copies measured before and after it; `copies_least`, the least of both.
 template <class Work>
 void measure(benchmark::State& state, const Work& work)
 {
   std::vector<double> copy, times;
   PlainCopy::shared().run(copy);
   std::size_t i = 0;
+  while (i < 3) work(i++);
   for (auto _ : state)
   {
     const double begin = cpuSeconds();

@@ -60,6 +60,19 @@ void DirectionProjector::project(ScanPoints scan, const std::vector<std::uint32_
   paint(scan, labels, class_bits, out);
 }
 
+inline void DirectionProjector::takePixel(ScanPoints scan, std::uint32_t point, PointDirection direction,
+                                          Projection& out)
+{
+  std::uint32_t hidden = point;
+  if (direction.azimuth == direction.azimuth)  // false for NaN
+  {
+    ++returns_;
+    std::uint32_t& owner = out.owner_of_pixel[out.pixel_of_point[point]];
+    if (owner == Projection::kNone || squaredRange(scan[point]) < squaredRange(scan[owner])) std::swap(owner, hidden);
+  }
+  if (hidden != Projection::kNone) hidden_.push_back(hidden);
+}
+
 void DirectionProjector::locate(ScanPoints scan, const std::vector<PointDirection>& directions, std::uint32_t columns,
                                 float shift, Projection& out)
 {
@@ -92,18 +105,6 @@ void DirectionProjector::findPixels(const std::vector<PointDirection>& direction
     }
     out.pixel_of_point[i] = pixel;
   }
-}
-
-void DirectionProjector::takePixel(ScanPoints scan, std::uint32_t point, PointDirection direction, Projection& out)
-{
-  std::uint32_t hidden = point;
-  if (direction.azimuth == direction.azimuth)  // false for NaN
-  {
-    ++returns_;
-    std::uint32_t& owner = out.owner_of_pixel[out.pixel_of_point[point]];
-    if (owner == Projection::kNone || squaredRange(scan[point]) < squaredRange(scan[owner])) std::swap(owner, hidden);
-  }
-  if (hidden != Projection::kNone) hidden_.push_back(hidden);
 }
 
 void DirectionProjector::listPoints(Projection& out)

@@ -11,6 +11,7 @@ namespace
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 1.001F;     // outlines are never to exclude what points would join
 constexpr std::size_t kMostPairs = 32;  // an object, in the mean; in a denser heap all points are looked at
+constexpr std::size_t kAhead = 16;      // objects that are fetched before they are looked at
 }  // namespace
 
 void ClassBridging::Reach::add(const Footprint& other, float distance)
@@ -41,9 +42,10 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
   for (std::uint32_t k = 0; k < objects.size(); ++k) by_min_x_.push_back({objects[k].footprint.minX(), k});
   std::sort(by_min_x_.begin(), by_min_x_.end(), [](const Start& a, const Start& b) { return a.min_x < b.min_x; });
   extents_.clear();
-  for (const Start& start : by_min_x_)
+  for (std::size_t i = 0; i < by_min_x_.size(); ++i)
   {
-    const RefinedObject& object = objects[start.object];
+    if (i + kAhead < by_min_x_.size()) __builtin_prefetch(&objects[by_min_x_[i + kAhead].object].footprint);
+    const RefinedObject& object = objects[by_min_x_[i].object];
     const Footprint& f = object.footprint;
     extents_.push_back({f.maxX(), f.minY(), f.maxY(), table[object.class_index].group});
   }

@@ -149,7 +149,16 @@ void PartMerger::sortObjects(const std::vector<RefinedObject>& objects)
   order_.clear();
   for (const Start& start : by_min_x_) order_.push_back(start.object);
   sorted_.clear();
-  for (const std::uint32_t i : order_) sorted_.push_back(objects[i]);
+  constexpr std::size_t kAhead = 16, kLine = 64;  // [bytes] of the cache; objects lie anywhere
+  for (std::size_t k = 0; k < order_.size(); ++k)
+  {
+    if (k + kAhead < order_.size())
+    {
+      const auto* next = reinterpret_cast<const char*>(&objects[order_[k + kAhead]]);
+      __builtin_prefetch(next), __builtin_prefetch(next + kLine);
+    }
+    sorted_.push_back(objects[order_[k]]);
+  }
 }
 
 void PartMerger::merge(const std::vector<RefinedObject>& objects, const ClassTable& table,

@@ -75,7 +75,10 @@ TEST(WorkBounds, ofPointsKnownToBeOneObjectOneIsEnough)
 {
   // with every point of the window it is five times as many
   for (const WorstScan& worst : worstScans())
-    if (worst.name == "runs_of_one") EXPECT_LE(workOf<ScanLineRunClusterer>(worst, 32, 2048, "class"), 60.0);
+  {
+    if (worst.name != "runs_of_one") continue;
+    EXPECT_LE(workOf<ScanLineRunClusterer>(worst, 32, 2048, "class"), 60.0);
+  }
 }
 
 TEST(WorkBounds, birdsEyeLooksAtAPointAFewTimesForEachCellAround)
