@@ -41,8 +41,10 @@ void track(benchmark::State& state, const Scans& scans, bool with_output, bool w
           {
             if (i % clouds.size() == 0) tracker.reset();
             const PanopticCloud& cloud = clouds[i % clouds.size()];
-            tracker.follow(cloud, stamp_us += 100000, Eigen::Isometry3d::Identity());
-            if (with_output) tracker.paint(cloud, out);
+            if (with_output)
+              tracker.follow(cloud, stamp_us += 100000, Eigen::Isometry3d::Identity(), out);
+            else
+              tracker.follow(cloud, stamp_us += 100000, Eigen::Isometry3d::Identity());
             if (with_list) tracker.list(cloud);
           });
   state.counters["tracks"] = static_cast<double>(tracker.liveTracks());

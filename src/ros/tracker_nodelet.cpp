@@ -160,14 +160,17 @@ void TrackerNodelet::process(const Scan& scan)
   startAnewAfterJump(scan.cloud->header.frame_id, stamp);
   const Eigen::Isometry3d pose = poseOf(scan, stamp);
   const ros::WallTime start = ros::WallTime::now();
-  tracker_->follow(*scan.cloud, static_cast<std::int64_t>(stamp.toNSec() / 1000), pose);
-  const double follow_ms = (ros::WallTime::now() - start).toSec() * 1e3;
+  const auto stamp_us = static_cast<std::int64_t>(stamp.toNSec() / 1000);
+  PanopticCloud::Ptr out;
   if (output_.getNumSubscribers() > 0)
   {
-    const PanopticCloud::Ptr out(new PanopticCloud);
-    tracker_->paint(*scan.cloud, *out);
-    output_.publish(pcl::ros_ptr(out));
+    out = pool_.take();
+    tracker_->follow(*scan.cloud, stamp_us, pose, *out);
   }
+  else
+    tracker_->follow(*scan.cloud, stamp_us, pose);
+  const double follow_ms = (ros::WallTime::now() - start).toSec() * 1e3;
+  if (out) output_.publish(pcl::ros_ptr(out));
   if (markers_.getNumSubscribers() + objects_.listeners() > 0) publishObjects(*scan.cloud);
   warnOfUnknownClasses();
   diagnostics_.setFigure("live tracks", tracker_->liveTracks());

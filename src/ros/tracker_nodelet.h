@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/tracking/cloud_tracker.h"
 #include "ros/fixed_frame.h"
 #include "ros/latched_input.h"
@@ -84,7 +85,8 @@ private:
 
   TrackerNodeletConfig config_;
   std::shared_ptr<const ClassTable> table_;
-  std::unique_ptr<CloudTracker> tracker_;  ///< the thread's own once it runs, as are the next five
+  std::unique_ptr<CloudTracker> tracker_;  ///< the thread's own once it runs, as are the next six
+  CloudPool<PanopticCloud> pool_;
   FixedFrame frame_;
   bool has_pose_ = false;
   ros::Time last_stamp_;

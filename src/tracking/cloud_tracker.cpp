@@ -47,6 +47,33 @@ void CloudTracker::reset()
 
 void CloudTracker::follow(const PanopticCloud& cloud, std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor)
 {
+  begin(cloud, stamp_us, fixed_from_sensor);
+  take(cloud.points.data(), 0, static_cast<std::uint32_t>(cloud_size_));
+  finish();
+}
+
+void CloudTracker::follow(const PanopticCloud& cloud, std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor,
+                          PanopticCloud& out)
+{
+  constexpr std::uint32_t kBlock = 4096;  // points that are still in the cache after they were copied
+  begin(cloud, stamp_us, fixed_from_sensor);
+  out.header = cloud.header;
+  out.width = cloud.width, out.height = cloud.height, out.is_dense = cloud.is_dense;
+  out.sensor_origin_ = cloud.sensor_origin_, out.sensor_orientation_ = cloud.sensor_orientation_;
+  const auto size = static_cast<std::uint32_t>(cloud_size_);
+  out.points.resize(size);
+  for (std::uint32_t first = 0; first < size; first += kBlock)
+  {
+    const std::uint32_t end = std::min(size, first + kBlock);
+    std::copy(cloud.points.begin() + first, cloud.points.begin() + end, out.points.begin() + first);
+    take(out.points.data(), first, end);
+  }
+  finish();
+  paintThings(out);
+}
+
+void CloudTracker::begin(const PanopticCloud& cloud, std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor)
+{
   if (cloud.size() != std::size_t{cloud.width} * cloud.height)
     throw std::invalid_argument("expected width x height points, found " + std::to_string(cloud.width) + " x " +
                                 std::to_string(cloud.height) + " and " + std::to_string(cloud.size()) + " points");
@@ -57,16 +84,32 @@ void CloudTracker::follow(const PanopticCloud& cloud, std::int64_t stamp_us, con
   listed_ = false;
   points_.clear();
   tracker_.begin(stamp_us, fixed_from_sensor);
-  for (std::uint32_t i = 0; i < cloud_size_; ++i)
+}
+
+/// Hands the points of instances from `begin` to `end` to the tracker.
+void CloudTracker::take(const PanopticPoint* points, std::uint32_t begin, std::uint32_t end)
+{
+  for (std::uint32_t i = begin; i < end; ++i)
   {
-    const PanopticPoint& point = cloud.points[i];
+    const PanopticPoint& point = points[i];
     if (point.instance == 0) continue;
     const ClassIndex class_index = table_->find(point.label);
     if (class_index == kUnknownClass) ++unknown_points_;
     points_.push_back(i);
     tracker_.add(point.instance, class_index, point.x, point.y, point.z);
   }
+}
+
+void CloudTracker::finish()
+{
   tracker_.finish();
+  paints_.clear();
+  for (const TrackedObject& object : tracker_.objects())
+  {
+    const auto& ids = (*table_)[object.class_index].ids;
+    const std::uint32_t label = ids.empty() ? 0 : ids.front();
+    paints_.push_back({object.track, seriesColor(object.track), object.class_index, !ids.empty(), label});
+  }
 }
 
 void CloudTracker::requireSame(const PanopticCloud& cloud) const
@@ -80,16 +123,19 @@ void CloudTracker::paint(const PanopticCloud& cloud, PanopticCloud& out) const
 {
   requireSame(cloud);
   out = cloud;
-  std::uint32_t last_track = 0, rgb = 0;  // points of an object come in runs
+  paintThings(out);
+}
+
+/// Ids, colours and voted classes on a copy of the cloud that was followed.
+void CloudTracker::paintThings(PanopticCloud& out) const
+{
   for (std::size_t k = 0; k < points_.size(); ++k)
   {
-    const TrackedObject& object = tracker_.objectOf(k);
+    const Paint& paint = paints_[tracker_.placeOf(k)];
     PanopticPoint& point = out.points[points_[k]];
-    if (object.track != last_track) last_track = object.track, rgb = seriesColor(object.track);
-    point.instance = object.track;
-    point.rgb = rgb;
-    const auto& ids = (*table_)[object.class_index].ids;
-    if (table_->find(point.label) != object.class_index && !ids.empty()) point.label = ids.front();
+    point.instance = paint.track;
+    point.rgb = paint.rgb;
+    if (paint.has_label && table_->find(point.label) != paint.class_index) point.label = paint.label;
   }
 }
 
@@ -132,8 +178,7 @@ void CloudTracker::gather(const PanopticCloud& cloud)
   things_.points.clear(), instances_.id.clear();
   for (std::size_t k = 0; k < points_.size(); ++k)
   {
-    const TrackedObject& object = tracker_.objectOf(k);
-    Part& part = parts_[static_cast<std::size_t>(&object - tracker_.objects().data())];
+    Part& part = parts_[tracker_.placeOf(k)];
     const PanopticPoint& p = cloud.points[points_[k]];
     part.instance = p.instance;
     if (!std::isfinite(p.x) || !std::isfinite(p.y) || !std::isfinite(p.z)) continue;

@@ -10,6 +10,7 @@ namespace lidar_panoptic_clustering
 ObservationBuilder::ObservationBuilder(std::shared_ptr<const ClassTable> table) : table_(std::move(table))
 {
   if (!table_) throw std::invalid_argument("tracking needs a class table");
+  classes_ = table_->size();
 }
 
 void ObservationBuilder::begin(const Eigen::Isometry3d& fixed_from_sensor)
@@ -34,7 +35,7 @@ std::uint32_t ObservationBuilder::placeOf(std::uint32_t instance)
     Observation& observation = observations_.list.back();
     observation.instance = instance;
     observation.min_z = Extent::kFar, observation.max_z = -Extent::kFar;
-    votes_.resize(votes_.size() + table_->size(), 0);
+    votes_.resize(votes_.size() + classes_, 0);
     sum_.push_back(Eigen::Vector2d::Zero());
   }
   return last_place_;
@@ -44,20 +45,21 @@ std::uint32_t ObservationBuilder::add(std::uint32_t instance, ClassIndex class_i
 {
   const std::uint32_t place = placeOf(instance);
   if (!std::isfinite(x) || !std::isfinite(y) || !std::isfinite(z)) return place;
-  const Eigen::Vector3f p = rotation_ * Eigen::Vector3f(x, y, z);
+  const auto along = [&](int row) { return rotation_(row, 0) * x + rotation_(row, 1) * y + rotation_(row, 2) * z; };
+  const float px = along(0), py = along(1), pz = along(2);  // a product of Eigen's is a call here
   Observation& observation = observations_.list[place];
   ++observation.point_count;
-  ++votes_[place * table_->size() + class_index];
-  observation.extent.add(p.x(), p.y());
-  observation.min_z = std::min(observation.min_z, p.z());
-  observation.max_z = std::max(observation.max_z, p.z());
-  sum_[place] += p.head<2>().cast<double>();
+  ++votes_[place * classes_ + class_index];
+  observation.extent.add(px, py);
+  observation.min_z = std::min(observation.min_z, pz);
+  observation.max_z = std::max(observation.max_z, pz);
+  sum_[place].x() += static_cast<double>(px);
+  sum_[place].y() += static_cast<double>(py);
   return place;
 }
 
 const Observations& ObservationBuilder::finish()
 {
-  const std::size_t classes = table_->size();
   for (std::size_t i = 0; i < observations_.list.size(); ++i)
   {
     Observation& observation = observations_.list[i];
@@ -68,8 +70,8 @@ const Observations& ObservationBuilder::finish()
       observation.instance = instance;
       continue;
     }
-    const auto* votes = votes_.data() + i * classes;
-    const auto most = std::max_element(votes, votes + classes) - votes;
+    const auto* votes = votes_.data() + i * classes_;
+    const auto most = std::max_element(votes, votes + classes_) - votes;
     observation.class_index = static_cast<ClassIndex>(most);
     observation.class_share = static_cast<float>(votes[most]) / static_cast<float>(observation.point_count);
     observation.x = static_cast<float>(sum_[i].x() / observation.point_count);

@@ -10,7 +10,7 @@ constexpr std::uint32_t kNone = SparseAssignment::kNone;
 }
 
 PointTracker::PointTracker(std::shared_ptr<const ClassTable> table, const TrackerConfig& config)
-    : tracker_(table, config), builder_(table)
+    : tracker_(table, config), builder_(table), parting_(table)
 {
 }
 
@@ -18,56 +18,59 @@ void PointTracker::begin(std::int64_t stamp_us, const Eigen::Isometry3d& fixed_f
 {
   stamp_us_ = stamp_us;
   pose_ = fixed_from_sensor;
-  points_.clear();
+  points_.clear(), place_.clear();
+  builder_.begin(pose_);
 }
 
 void PointTracker::finish()
 {
-  observe();
-  const std::vector<Tracker::Share>& shares = tracker_.findMerged(stamp_us_, *seen_);
-  if (!shares.empty())
-  {
-    part(shares);
-    observe();
-  }
-  objects_ = &tracker_.update(stamp_us_, *seen_);
-}
-
-void PointTracker::observe()
-{
-  builder_.begin(pose_);
-  place_.resize(points_.size());
-  for (std::size_t i = 0; i < points_.size(); ++i)
-  {
-    const Point& p = points_[i];
-    place_[i] = builder_.add(p.instance, p.class_index, p.x, p.y, p.z);
-  }
   seen_ = &builder_.finish();
+  const bool is_parted = parting_.begin(*seen_, tracker_.findMerged(stamp_us_, *seen_)) && part(findParts());
+  objects_ = is_parted ? &tracker_.update(stamp_us_, *seen_) : &tracker_.updateMatched(stamp_us_, *seen_);
 }
 
-/// Numbers instances by their place, and those of shares beyond.
-void PointTracker::part(const std::vector<Tracker::Share>& shares)
+const std::vector<Tracker::Share>& PointTracker::findParts()
 {
-  const auto count = static_cast<std::uint32_t>(seen_->list.size());
-  first_share_.assign(count, kNone);
-  for (std::uint32_t s = 0; s < shares.size(); ++s)
-    if (first_share_[shares[s].observation] == kNone) first_share_[shares[s].observation] = s;
   const Eigen::Matrix3f rotation = pose_.linear().cast<float>();
   for (std::size_t i = 0; i < points_.size(); ++i)
   {
-    Point& point = points_[i];
-    const std::uint32_t place = place_[i];
-    point.instance = place + 1;
-    if (first_share_[place] == kNone) continue;
-    const Eigen::Vector3f p = rotation * Eigen::Vector3f(point.x, point.y, point.z);
-    std::uint32_t nearest = first_share_[place];
-    float least = Extent::kFar;
-    for (std::uint32_t s = first_share_[place]; s < shares.size() && shares[s].observation == place; ++s)
-    {
-      const float distance = shares[s].outline.distanceTo(p.x(), p.y());
-      if (distance < least) least = distance, nearest = s;
-    }
-    point.instance = count + 1 + nearest;
+    if (!parting_.wants(place_[i])) continue;
+    const Eigen::Vector3f p(points_[i].x, points_[i].y, points_[i].z);
+    if (p.allFinite()) parting_.add(place_[i], (rotation * p).head<2>());
   }
+  return parting_.finish();
+}
+
+/// Observes the scan again where there are parts: instances numbered by their place, and those of parts beyond.
+bool PointTracker::part(const std::vector<Tracker::Share>& parts)
+{
+  if (parts.empty()) return false;
+  const auto count = static_cast<std::uint32_t>(seen_->list.size());
+  first_part_.assign(count, kNone);
+  for (std::uint32_t k = 0; k < parts.size(); ++k)
+    if (first_part_[parts[k].observation] == kNone) first_part_[parts[k].observation] = k;
+  const Eigen::Matrix3f rotation = pose_.linear().cast<float>();
+  builder_.begin(pose_);
+  for (std::size_t i = 0; i < points_.size(); ++i)
+  {
+    const Point& point = points_[i];
+    const std::uint32_t place = place_[i];
+    std::uint32_t instance = place + 1;
+    if (first_part_[place] != kNone)
+    {
+      const Eigen::Vector3f p = rotation * Eigen::Vector3f(point.x, point.y, point.z);
+      std::uint32_t nearest = first_part_[place];
+      float least = Extent::kFar;
+      for (std::uint32_t k = first_part_[place]; k < parts.size() && parts[k].observation == place; ++k)
+      {
+        const float distance = parts[k].outline.distanceTo(p.x(), p.y());
+        if (distance < least) least = distance, nearest = k;
+      }
+      instance = count + 1 + nearest;
+    }
+    place_[i] = builder_.add(instance, point.class_index, point.x, point.y, point.z);
+  }
+  seen_ = &builder_.finish();
+  return true;
 }
 }  // namespace lidar_panoptic_clustering

@@ -73,6 +73,11 @@ bool Tracker::isAlive(std::uint32_t track) const
 const std::vector<TrackedObject>& Tracker::update(std::int64_t stamp_us, const Observations& observations)
 {
   match(stamp_us, observations);
+  return updateMatched(stamp_us, observations);
+}
+
+const std::vector<TrackedObject>& Tracker::updateMatched(std::int64_t stamp_us, const Observations& observations)
+{
   joinParts(observations);
   const bool is_new = !has_begun_ || stamp_us > last_us_;
   if (is_new) learn(stamp_us, observations);
@@ -146,7 +151,8 @@ void Tracker::assign(const Observations& observations)
     if (track_of_[i] != kNone) observed_in_[track_of_[i]] = i;
 }
 
-/// Whether what was seen lies within the outline the track had.
+/// Whether what was seen lies within the outline the track had, and may be of one object with what was seen of it. The
+/// outline alone does not tell: two people who were one instance before have one track.
 bool Tracker::isPartOf(const Observation& observation, std::uint32_t track) const
 {
   constexpr float kMarginM = 0.5F;
@@ -157,10 +163,23 @@ bool Tracker::isPartOf(const Observation& observation, std::uint32_t track) cons
   for (std::size_t k = 0; k < Extent::kAxes; ++k)
     if (observation.extent.min[k] < outline.min[k] - kMarginM || observation.extent.max[k] > outline.max[k] + kMarginM)
       return false;
-  return true;
+  if (!isSmall(ours)) return true;
+  Extent together = whole_[track].extent;
+  together.add(observation.extent);
+  return together.fits(ours.length_m, ours.width_m);
 }
 
-/// Gives instances that are left to the track they are a part of; whole_ is what was seen of each track.
+/// Whether an observation may be a part of a track that is seen elsewhere too: it has no track, or a fragment's.
+bool Tracker::isTorn(std::uint32_t i, std::uint32_t track) const
+{
+  constexpr std::uint32_t kFragment = 5, kOld = 12;  // scans
+  const std::uint32_t own = track_of_[i];
+  if (own == track || observed_in_[track] == kNone) return false;
+  return own == kNone || (tracks_[own].object.scans < kFragment && tracks_[track].object.scans >= kOld);
+}
+
+/// Gives instances that are left, or have a fragment's track, to the track they are a part of; whole_ is what was seen
+/// of each track.
 void Tracker::joinParts(const Observations& observations)
 {
   whole_.resize(tracks_.size());
@@ -168,16 +187,16 @@ void Tracker::joinParts(const Observations& observations)
     if (observed_in_[t] != kNone) whole_[t] = observations.list[observed_in_[t]];
   for (std::uint32_t i = 0; i < track_of_.size(); ++i)
   {
-    if (track_of_[i] != kNone) continue;
     std::uint32_t best = kNone;
     float least = 0.0F;
     for (std::uint32_t c = candidates_begin_[i]; c < candidates_begin_[i + 1]; ++c)
     {
       const auto [track, cost] = candidates_[c];
-      if (observed_in_[track] == kNone || !isPartOf(observations.list[i], track)) continue;
+      if (!isTorn(i, track) || !isPartOf(observations.list[i], track)) continue;
       if (best == kNone || cost < least) best = track, least = cost;
     }
     if (best == kNone) continue;
+    if (track_of_[i] != kNone) observed_in_[track_of_[i]] = kNone;
     track_of_[i] = best;
     whole_[best].extent.add(observations.list[i].extent);
     whole_[best].point_count += observations.list[i].point_count;

@@ -19,7 +19,7 @@ constexpr double kOtherClass = 1.0, kOtherGroup = 5.0;  ///< a class that is not
 constexpr double kMissed = 5.0;                         ///< for each second the track was not seen
 constexpr double kYoung = 4.0;                          ///< by the scans it was seen in: of two, the older one stays
 constexpr double kMostHidden = 5.0;                     ///< for outlines of another size, which one stray point makes
-constexpr double kMostPoints = 16.0;                    ///< for another number of points
+constexpr double kMostPoints = 6.0;                     ///< for another number of points, as what is half hidden has
 
 struct Cells
 {

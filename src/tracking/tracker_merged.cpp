@@ -21,45 +21,80 @@ float leastOverlap(const Extent& a, const Extent& b)
   }
   return least;
 }
-}  // namespace
 
-/// Whether most of where a track should be lies within what was seen.
-bool Tracker::isHeldBy(const Observation& observation, std::uint32_t track) const
+/// The share of an outline that lies within what was seen, along the axis where that is least; below 0 outside.
+float heldShare(const Extent& outline, const Extent& seen)
 {
-  constexpr float kMost = 0.6F;
-  const Extent& outline = expected_[track].outline;
+  float least = 1.0F;
   for (std::size_t k = 0; k < Extent::kAxes; ++k)
   {
-    const float shared =
-        std::min(outline.max[k], observation.extent.max[k]) - std::max(outline.min[k], observation.extent.min[k]);
-    if (shared < kMost * (outline.max[k] - outline.min[k])) return false;
+    const float shared = std::min(outline.max[k], seen.max[k]) - std::max(outline.min[k], seen.min[k]);
+    least = std::min(least, shared / std::max(outline.max[k] - outline.min[k], 0.05F));
   }
-  return true;
+  return least;
+}
+}  // namespace
+
+/// Lists the tracks that should be within an observation, the ones seen in nothing else first.
+void Tracker::findHeld(const Observations& observations, std::uint32_t i)
+{
+  constexpr std::uint32_t kFewest = 3;               // scans that make a track more than a fragment
+  constexpr float kOwnLeast = 0.2F, kLeast = 0.3F;   // share of the outline
+  constexpr float kOwn = 3.0F, kSeenNowhere = 1.0F;  // in rank
+  held_.clear();
+  const auto& group = (*table_)[observations.list[i].class_index].group;
+  for (std::uint32_t c = candidates_begin_[i]; c < candidates_begin_[i + 1]; ++c)
+  {
+    const std::uint32_t track = candidates_[c].track, in = observed_in_[track];
+    if (tracks_[track].object.scans < kFewest || (*table_)[tracks_[track].object.class_index].group != group) continue;
+    const Extent& outline = expected_[track].outline;
+    const float held = heldShare(outline, observations.list[i].extent);
+    if (in == i && held > kOwnLeast) held_.push_back({kOwn, track});
+    if (in == i || held < kLeast) continue;
+    if (in == kNone)
+      held_.push_back({kSeenNowhere + held, track});
+    else if (heldShare(outline, observations.list[in].extent) <= 0.0F)  // it was given what is none of its own
+      held_.push_back({held, track});
+  }
+  std::sort(held_.begin(), held_.end(),
+            [](const Held& a, const Held& b) { return a.rank != b.rank ? a.rank > b.rank : a.track < b.track; });
+}
+
+/// Gives a track its share of an observation, whose shares begin at `first`, where it lies beside all other tracks. Two
+/// that together are hardly larger than one object of their class are of one.
+void Tracker::share(std::uint32_t i, std::uint32_t track, std::size_t first)
+{
+  constexpr float kSideBySide = 0.4F;                // tracks that overlap by more are of one object
+  constexpr float kMayBeTwo = 0.7F, kIsTwo = 1.15F;  // times the usual size
+  const ClassInfo& info = (*table_)[tracks_[track].object.class_index];
+  const Extent& outline = expected_[track].outline;
+  bool is_sure = true;
+  for (std::size_t s = first; s < shares_.size(); ++s)
+  {
+    Extent together = shares_[s].outline;
+    if (leastOverlap(together, outline) >= kSideBySide) return;
+    together.add(outline);
+    if (info.length_m <= 0.0F) continue;
+    if (together.fits(kMayBeTwo * info.length_m, kMayBeTwo * info.width_m)) return;
+    is_sure = is_sure && !together.fits(kIsTwo * info.length_m, kIsTwo * info.width_m);
+  }
+  shares_.push_back({i, outline, is_sure});
+}
+
+void Tracker::shareOut(const Observations& observations, std::uint32_t i)
+{
+  findHeld(observations, i);
+  if (held_.size() < 2) return;
+  const std::size_t first = shares_.size();
+  for (const Held& held : held_) share(i, held.track, first);
+  if (shares_.size() == first + 1) shares_.pop_back();
 }
 
 const std::vector<Tracker::Share>& Tracker::findMerged(std::int64_t stamp_us, const Observations& observations)
 {
-  constexpr float kSideBySide = 0.4F;   // tracks that overlap by more are of one object
-  constexpr std::uint32_t kFewest = 3;  // scans that make a track more than a fragment
   shares_.clear();
   match(stamp_us, observations);
-  for (std::uint32_t i = 0; i < track_of_.size(); ++i)
-  {
-    if (track_of_[i] == kNone) continue;
-    const std::size_t first = shares_.size();
-    const auto share = [&](std::uint32_t track) { shares_.push_back({i, expected_[track].outline}); };
-    share(track_of_[i]);
-    for (std::uint32_t c = candidates_begin_[i]; c < candidates_begin_[i + 1]; ++c)
-    {
-      const std::uint32_t track = candidates_[c].track;
-      if (observed_in_[track] != kNone || tracks_[track].object.scans < kFewest) continue;
-      if (!isHeldBy(observations.list[i], track)) continue;
-      const auto beside = [&](const Share& other)
-      { return leastOverlap(other.outline, expected_[track].outline) < kSideBySide; };
-      if (std::all_of(shares_.begin() + static_cast<std::ptrdiff_t>(first), shares_.end(), beside)) share(track);
-    }
-    if (shares_.size() == first + 1) shares_.pop_back();
-  }
+  for (std::uint32_t i = 0; i < track_of_.size(); ++i) shareOut(observations, i);
   return shares_;
 }
 }  // namespace lidar_panoptic_clustering

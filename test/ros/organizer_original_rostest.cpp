@@ -5,6 +5,9 @@
 #include <map>
 #include <numeric>
 #include <random>
+#include <string>
+#include <tuple>
+#include <vector>
 
 namespace lidar_panoptic_clustering
 {
@@ -111,6 +114,48 @@ TEST_F(OriginalGraph, ComesBackByteForByteWithLabelsAndInstances)
     EXPECT_EQ(canonical(instance), canonical(instancesOf(expected)));
     for (std::size_t i = 0; i < scene.size(); ++i) ASSERT_EQ(label[i], expected.points[i].label) << i;
   }
+}
+
+TEST_F(OriginalGraph, CarriesTrackIdsThatStayWhereInstancesAreRenumbered)
+{
+  ASSERT_TRUE(tryLoad(clusterer_, "BirdsEyeClusterNodelet", {{clusterer_ + "/input", name_ + "/output"}}));
+  const std::string tracker = newName();
+  ros::param::set(tracker + "/fixed_frame", "");
+  ASSERT_TRUE(tryLoad(tracker, "TrackerNodelet", {{tracker + "/input", clusterer_ + "/output"}}));
+  set("labels", "field");
+  set("lasting_ids", true);
+  input_ = advertise<sensor_msgs::PointCloud2>(name_ + "/input");
+  ASSERT_TRUE(tryLoad(name_, "OrganizerNodelet", {{name_ + "/panoptic", tracker + "/output"}}));
+  original_ = std::make_unique<Probe<sensor_msgs::PointCloud2>>(name_ + "/output_original");
+  waitForSubscriber(input_);
+  for (const std::string& topic : {tracker + "/output", clusterer_ + "/output", name_ + "/output"})
+    waitForListener(topic);
+
+  const LabelledCloud scene = labelledScene();
+  LabelledCloud without_first = scene;
+  const PanopticCloud whole = runAlgorithm("birds_eye", scene);
+  for (std::size_t i = 0; i < scene.size(); ++i)
+    if (whole.points[i].instance == 1) without_first.points[i].label = 40;  // road
+  const PanopticCloud rest = runAlgorithm("birds_eye", without_first);
+
+  std::vector<std::uint32_t> first, second;
+  for (const auto& [cloud, ids, stamp_s] :
+       {std::tuple(&scene, &first, 10.0), std::tuple(&without_first, &second, 10.1)})
+  {
+    input_.publish(toRosMessage(oddMessage(*cloud), "roof", ros::Time(stamp_s)));
+    const auto back = original_->next();
+    ASSERT_TRUE(back);
+    *ids = idsIn(*back, "instance");
+  }
+  std::size_t renumbered = 0;
+  for (std::size_t i = 0; i < scene.size(); ++i)
+  {
+    if (rest.points[i].instance == 0) continue;
+    renumbered += whole.points[i].instance != rest.points[i].instance ? 1 : 0;
+    ASSERT_GT(first[i], 0U) << i;
+    ASSERT_EQ(second[i], first[i]) << i;
+  }
+  EXPECT_GT(renumbered, 0U);
 }
 
 TEST_F(OriginalGraph, TransposedCloudComesBackInItsOwnOrder)

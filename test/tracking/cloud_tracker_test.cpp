@@ -107,6 +107,40 @@ TEST_F(CloudTrackerTest, PaintsIdsAndLeavesAllElseBitForBit)
   for (const auto& [instance, ids] : tracks) EXPECT_EQ(ids.size(), 1U) << instance;
 }
 
+TEST_F(CloudTrackerTest, FollowingAndPaintingInOnePassGiveTheSame)
+{
+  CloudTracker other(kitti());
+  PanopticCloud one_pass;
+  for (int k = 0; k < 8; ++k)
+  {
+    Scan scan;
+    scan.car(1, 10.0 + k, 3.0, k == 6 ? kTruck : kCar).point(0, 1.0, 2.0, 3.0, kRoad).car(2, 20.0, -3.0);
+    for (int i = 0; i < 9000; ++i) scan.point(0, 30.0, 0.001 * i, 0.0, kRoad);  // more than a block
+    scan.car(3, 40.0, 3.0);
+    PanopticCloud cloud = scan.cloud();
+    cloud.header.stamp = 77, cloud.header.frame_id = "lidar", cloud.is_dense = false;
+    follow(0.1 * k, cloud);
+    other.follow(cloud, std::llround(1e5 * k), Eigen::Isometry3d::Identity(), one_pass);
+    ASSERT_EQ(one_pass.size(), out_.size());
+    EXPECT_EQ(one_pass.header, out_.header);
+    EXPECT_EQ(one_pass.width, out_.width);
+    EXPECT_EQ(one_pass.height, out_.height);
+    EXPECT_EQ(one_pass.is_dense, out_.is_dense);
+    for (std::size_t i = 0; i < out_.size(); ++i)
+    {
+      const PanopticPoint &p = out_.points[i], &q = one_pass.points[i];
+      ASSERT_EQ(std::memcmp(p.data, q.data, sizeof(p.data)), 0) << i;
+      ASSERT_EQ(p.intensity, q.intensity);
+      ASSERT_EQ(p.label, q.label) << i;
+      ASSERT_EQ(p.instance, q.instance) << i;
+      ASSERT_EQ(p.rgb, q.rgb) << i;
+    }
+  }
+  PanopticCloud broken;
+  broken.width = 3, broken.height = 1;
+  EXPECT_THROW(other.follow(broken, 0, Eigen::Isometry3d::Identity(), one_pass), std::invalid_argument);
+}
+
 TEST_F(CloudTrackerTest, ListsBoxesAndSpeedsInTheSensorsAxes)
 {
   // the sensor looks along the fixed frame's y and drives that way at 2 m/s; the car drives along the fixed x at 6 m/s

@@ -44,6 +44,9 @@ public:
   /// Follows the instances of a scan; `fixed_from_sensor`: where the sensor is in the frame that objects are followed
   /// in. Throws std::invalid_argument when the cloud's size contradicts its points.
   void follow(const PanopticCloud& cloud, std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor);
+  /// The same and paint(), in one pass over the cloud. Throws as follow() does; then `out` holds nothing of use.
+  void follow(const PanopticCloud& cloud, std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor,
+              PanopticCloud& out);
 
   /// Fills `out` with the points of `cloud`, the one followed last: with track ids for instances, their colours, and
   /// the class that was voted where a point has another. All else is the same bit for bit. Throws
@@ -82,6 +85,19 @@ private:
     std::uint32_t instance;  ///< in the cloud
   };
 
+  /// What paint() writes for an observation.
+  struct Paint
+  {
+    std::uint32_t track, rgb;
+    ClassIndex class_index;
+    bool has_label;  ///< the class has an id of its own
+    std::uint32_t label;
+  };
+
+  void begin(const PanopticCloud& cloud, std::int64_t stamp_us, const Eigen::Isometry3d& fixed_from_sensor);
+  void take(const PanopticPoint* points, std::uint32_t begin, std::uint32_t end);
+  void finish();
+  void paintThings(PanopticCloud& out) const;
   void requireSame(const PanopticCloud& cloud) const;
   void beginList();
   void gather(const PanopticCloud& cloud);
@@ -96,6 +112,7 @@ private:
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::size_t cloud_size_ = 0, unknown_points_ = 0;
   std::vector<std::uint32_t> points_;  ///< those of instances, by index in the cloud
+  std::vector<Paint> paints_;          ///< by observation
 
   bool listed_ = false;
   std::vector<ListedTrack> list_;

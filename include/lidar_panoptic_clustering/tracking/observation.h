@@ -45,6 +45,13 @@ struct Extent
     }
     return most;
   }
+  /// Whether a rectangle along one of the axes, about all of it, is at most `length` x `width` [m].
+  bool fits(float length, float width) const
+  {
+    for (std::size_t k = 0; k < kAxes; ++k)
+      if (max[k] - min[k] <= length && max[k ^ 1U] - min[k ^ 1U] <= width) return true;
+    return false;
+  }
   /// Extends it to all of another one.
   void add(const Extent& other)
   {
@@ -55,6 +62,14 @@ struct Extent
     }
   }
 };
+
+/// Whether objects of a class are small (people, bicycles): none is larger than usual because another thing stands
+/// before it, and where a scan shows two things that are not near enough for one, they are two.
+inline bool isSmall(const ClassInfo& info)
+{
+  constexpr float kSmallM = 2.0F;
+  return info.length_m > 0.0F && info.length_m < kSmallM;
+}
 
 /// One instance of one scan, as the tracker sees it.
 struct Observation
@@ -94,6 +109,7 @@ private:
   std::uint32_t placeOf(std::uint32_t instance);
 
   std::shared_ptr<const ClassTable> table_;
+  std::size_t classes_ = 0;
   Eigen::Matrix3f rotation_;
   Observations observations_;
   VoxelIndex place_of_;

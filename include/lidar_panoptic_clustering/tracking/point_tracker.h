@@ -1,5 +1,6 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/tracking/instance_parting.h"
 #include "lidar_panoptic_clustering/tracking/observation.h"
 #include "lidar_panoptic_clustering/tracking/tracker.h"
 
@@ -10,8 +11,8 @@
 
 namespace lidar_panoptic_clustering
 {
-/// Ids that last for the points of scans: Tracker, and before it the instances that hold several tracks are parted,
-/// each point going to the track whose outline it is in or nearest to.
+/// Ids that last for the points of scans: Tracker, and before it the instances that are several objects are parted (see
+/// InstanceParting), each point going to the part whose outline it is in or nearest to.
 ///
 /// Keeps its memory between scans; linear in the points. Not shared between threads.
 class PointTracker
@@ -28,13 +29,16 @@ public:
   /// Adds a point of an instance (any id but 0), in the sensor frame [m].
   void add(std::uint32_t instance, ClassIndex class_index, float x, float y, float z)
   {
-    points_.push_back({x, y, z, instance, class_index});
+    points_.push_back({x, y, z, class_index});
+    place_.push_back(builder_.add(instance, class_index, x, y, z));
   }
   /// Follows the instances.
   void finish();
 
   /// The object of the i-th point that was added; valid until the next finish().
   const TrackedObject& objectOf(std::size_t i) const { return (*objects_)[place_[i]]; }
+  /// Its place in objects() and observations(); likewise.
+  std::uint32_t placeOf(std::size_t i) const { return place_[i]; }
   /// The scan's objects, and what was seen of each: parallel, several of them may be parts of one track.
   const std::vector<TrackedObject>& objects() const { return *objects_; }
   const std::vector<Observation>& observations() const { return seen_->list; }  ///< likewise, parallel to objects()
@@ -43,19 +47,19 @@ private:
   struct Point
   {
     float x, y, z;
-    std::uint32_t instance;
     ClassIndex class_index;
   };
-  void observe();
-  void part(const std::vector<Tracker::Share>& shares);
+  const std::vector<Tracker::Share>& findParts();
+  bool part(const std::vector<Tracker::Share>& parts);
 
   Tracker tracker_;
   ObservationBuilder builder_;
+  InstanceParting parting_;
   std::int64_t stamp_us_ = 0;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
   std::vector<Point> points_;
-  std::vector<std::uint32_t> place_;        ///< by point, in the list of observations
-  std::vector<std::uint32_t> first_share_;  ///< by observation: the first of its shares, kNone for none
+  std::vector<std::uint32_t> place_;       ///< by point, in the list of observations
+  std::vector<std::uint32_t> first_part_;  ///< by observation: the first of its parts, kNone for none
   const Observations* seen_ = nullptr;
   const std::vector<TrackedObject>* objects_ = nullptr;
 };

@@ -72,10 +72,13 @@ public:
   {
     std::uint32_t observation;  ///< its place
     Extent outline;             ///< where the track should be, from Observations::origin
+    bool is_sure;               ///< with any of the others it is larger than one object of the class
   };
   /// The tracks of observations that hold more than one: they lie within it, side by side, and nothing else is seen of
   /// them. By observation; valid until the next call. Teaches nothing.
   const std::vector<Share>& findMerged(std::int64_t stamp_us, const Observations& observations);
+  /// update() of the scan that findMerged() was given last: goes on from there. The observations have to be the same.
+  const std::vector<TrackedObject>& updateMatched(std::int64_t stamp_us, const Observations& observations);
 
   /// Forgets all tracks (a jump in time, another sequence). Ids go on from the last one.
   void reset();
@@ -110,7 +113,9 @@ private:
   };
 
   void match(std::int64_t stamp_us, const Observations& observations);
-  bool isHeldBy(const Observation& observation, std::uint32_t track) const;
+  void shareOut(const Observations& observations, std::uint32_t i);
+  void findHeld(const Observations& observations, std::uint32_t i);
+  void share(std::uint32_t i, std::uint32_t track, std::size_t first);
   void expect(double dt, const Eigen::Vector3d& origin);
   void enterIntoGrid();
   void findCandidates(const Observations& observations);
@@ -120,6 +125,7 @@ private:
   void assign(const Observations& observations);
   void joinParts(const Observations& observations);
   bool isPartOf(const Observation& observation, std::uint32_t track) const;
+  bool isTorn(std::uint32_t i, std::uint32_t track) const;
   void learn(std::int64_t stamp_us, const Observations& observations);
   static void tellMotion(Track& track);
   void follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin);
@@ -159,5 +165,11 @@ private:
   std::vector<Observation> whole_;          ///< by track: what was seen of it, parts included
   std::vector<TrackedObject> objects_;
   std::vector<Share> shares_;
+  struct Held
+  {
+    float rank;  ///< the higher, the sooner it has its share
+    std::uint32_t track;
+  };
+  std::vector<Held> held_;  ///< by the observation in hand
 };
 }  // namespace lidar_panoptic_clustering

@@ -169,8 +169,7 @@ private:
     Eigen::Isometry3d world_from_sensor = Eigen::Isometry3d::Identity();
     world_from_sensor.linear() = Eigen::AngleAxisd(pose.yaw, Eigen::Vector3d::UnitZ()).toRotationMatrix();
     world_from_sensor.translation() = Eigen::Vector3d(pose.x, pose.y, pose.z);
-    tracker_.follow(clustered_, std::llround(1e6 * time_s), world_from_sensor);
-    tracker_.paint(clustered_, tracked_);
+    tracker_.follow(clustered_, std::llround(1e6 * time_s), world_from_sensor, tracked_);
     judge_.add(time_s, truth_, tracked_);
     judgeSpeeds(frame, world_from_sensor);
   }

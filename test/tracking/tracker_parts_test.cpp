@@ -1,0 +1,140 @@
+#include "tracker_scene.h"
+
+#include <set>
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+class TrackerPartsTest : public TrackerScene
+{
+};
+
+TEST_F(TrackerPartsTest, TwoPeopleWhoWereOneInstanceAtFirstHaveTwoIdsOnceTheyAreTwo)
+{
+  std::map<std::uint32_t, std::uint32_t> ids;
+  for (int k = 0; k < 30; ++k)
+  {
+    begin();
+    const bool is_merged = k < 8;
+    person(1, 10.0 + 0.1 * k, 0.0);
+    person(is_merged ? 1 : 2, 10.0 + 0.1 * k, 0.7);
+    for (const auto& [instance, object] : track(0.1 * k))
+    {
+      if (is_merged) continue;
+      EXPECT_EQ(ids.emplace(instance, object.track).first->second, object.track) << k;
+    }
+  }
+  EXPECT_NE(ids[1], ids[2]);
+}
+
+TEST_F(TrackerPartsTest, AFragmentThatHadAnIdOfItsOwnTakesThatOfTheObject)
+{
+  std::uint32_t id = 0;
+  for (int k = 0; k < 30; ++k)
+  {
+    begin();
+    const bool is_torn = k == 15 || k == 16;
+    if (k == 14) add(2, "car", 12.9, 3.0, 0.6, 0.3);  // beyond the outline: an object of its own
+    if (is_torn)
+    {
+      add(1, "car", 9.2, 3.0, 2.6, 1.8);
+      add(2, "car", 11.6, 3.0, 1.4, 1.8);
+    }
+    else
+      car(1, 10.0, 3.0);
+    const auto objects = track(0.1 * k);
+    if (k == 0) id = objects.at(1).track;
+    EXPECT_EQ(objects.at(1).track, id) << k;
+    if (is_torn)
+    {
+      EXPECT_EQ(objects.at(2).track, id) << k;
+    }
+  }
+}
+
+TEST_F(TrackerPartsTest, OneThatComesOutFromBehindAnotherWithManyTimesThePointsKeepsItsId)
+{
+  std::uint32_t id = 0;
+  for (int k = 0; k < 30; ++k)
+  {
+    begin();
+    if (k < 10)
+      add(1, "car", 8.05, 3.0, 0.5, 0.2);  // its rear corner
+    else if (k >= 15)
+      car(1, 10.0, 3.0);
+    const auto objects = track(0.1 * k);
+    if (objects.empty()) continue;
+    if (k == 0) id = objects.at(1).track;
+    EXPECT_EQ(objects.at(1).track, id) << k;
+  }
+}
+
+TEST_F(TrackerPartsTest, PartsOfATornObjectHaveItsId)
+{
+  std::uint32_t id = 0;
+  for (int k = 0; k < 30; ++k)
+  {
+    begin();
+    const double x = 10.0 + 0.5 * k;
+    const bool is_torn = k >= 10 && k % 2 == 0;
+    if (is_torn)
+    {
+      add(1, "car", x - 1.2, 3.0, 2.1, 1.8);
+      add(2, "car", x + 1.5, 3.0, 1.5, 1.8);
+    }
+    else
+      car(1, x, 3.0);
+    car(3, x, 9.0);
+    const auto objects = track(0.1 * k);
+    if (k == 0) id = objects.at(1).track;
+    EXPECT_EQ(objects.at(1).track, id) << k;
+    if (is_torn)
+    {
+      EXPECT_EQ(objects.at(2).track, id) << k;
+    }
+    EXPECT_NE(objects.at(3).track, id);
+  }
+}
+
+TEST_F(TrackerPartsTest, TwoThatAScanMergesAreToldApartAgain)
+{
+  std::map<std::uint32_t, std::uint32_t> ids;
+  for (int k = 0; k < 40; ++k)
+  {
+    begin();
+    const bool is_merged = k >= 15 && k < 22;
+    person(1, 10.0 + 0.1 * k, 0.0);
+    person(is_merged ? 1 : 2, 10.0 + 0.1 * k, 0.9);
+    const auto objects = track(0.1 * k);
+    if (k == 0) ids = {{1, objects.at(1).track}, {2, objects.at(2).track}};
+    if (is_merged) continue;
+    EXPECT_EQ(objects.at(1).track, ids[1]) << k;
+    EXPECT_EQ(objects.at(2).track, ids[2]) << k;
+  }
+}
+
+TEST_F(TrackerPartsTest, ACarCalledTruckForThreeScansStaysACar)
+{
+  const ClassIndex is_car = kitti()->findByName("car"), is_truck = kitti()->findByName("truck");
+  for (const bool vote : {true, false})
+  {
+    TrackerConfig config;
+    config.vote_over_time = vote;
+    tracker_.configure(config);
+    std::set<std::uint32_t> ids;
+    for (int k = 0; k < 20; ++k)
+    {
+      begin();
+      const bool is_wrong = k >= 8 && k < 11;
+      add(1, is_wrong ? "truck" : "car", 10.0, 0.0, 4.5, 1.8);
+      const TrackedObject object = track(0.1 * k).at(1);
+      ids.insert(object.track);
+      EXPECT_EQ(object.class_index, is_wrong && !vote ? is_truck : is_car) << k;
+    }
+    EXPECT_EQ(ids.size(), 1U);
+    tracker_.reset();
+  }
+}
+}  // namespace
+}  // namespace lidar_panoptic_clustering
