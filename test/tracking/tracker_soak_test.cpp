@@ -57,7 +57,10 @@ TEST(TrackerSoak, TenThousandScansTakeNoMoreMemoryThanTwoThousand)
   EXPECT_GT(newest, kScans / 10) << "the drive passes many objects";
   EXPECT_LT(most, 500U);
   EXPECT_GT(warm, 0U);
-  if (!kSanitized) EXPECT_LT(residentBytes(), warm + kSlack);
+  if (!kSanitized)
+  {
+    EXPECT_LT(residentBytes(), warm + kSlack);
+  }
 }
 }  // namespace
 }  // namespace lidar_panoptic_clustering
