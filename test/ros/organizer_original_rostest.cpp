@@ -131,7 +131,7 @@ TEST_F(OriginalGraph, CarriesTrackIdsThatStayWhereInstancesAreRenumbered)
   for (const std::string& topic : {tracker + "/output", clusterer_ + "/output", name_ + "/output"})
     waitForListener(topic);
 
-  const LabelledCloud scene = labelledScene();
+  LabelledCloud scene = labelledScene();
   LabelledCloud without_first = scene;
   const PanopticCloud whole = runAlgorithm("birds_eye", scene);
   for (std::size_t i = 0; i < scene.size(); ++i)
