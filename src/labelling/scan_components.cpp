@@ -79,6 +79,7 @@ void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<Ground
   const bool highest_first = isHighestFirst(cloud, returns);
   examineTops(cloud, highest_first);
   examineFeet(returns, highest_first);
+  findColumns(returns);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run) measureRun(cloud, returns, run);
   components_.clear();
   for (std::uint32_t part = 0; part < parts_.size(); ++part)
@@ -286,24 +287,42 @@ void ScanComponents::measureRun(const LabelledCloud& cloud, const std::vector<Gr
   c.triples += triples, c.rough_triples += rough_triples;
 }
 
-/// A part ends with this pixel; it stands free where what comes next lies behind, or nothing does.
+/// An image of more columns than firings has a column without any return now and then.
+void ScanComponents::findColumns(const std::vector<GroundedReturn>& returns)
+{
+  has_return_.assign(columns_, 0);
+  for (std::size_t row = 0; row < returns.size(); row += columns_)
+    for (std::uint32_t column = 0; column < columns_; ++column)
+      has_return_[column] |= static_cast<std::uint8_t>(returns[row + column].isReturn());
+}
+
+/// A part ends with this pixel, unless it goes on beyond columns that have no return at all; it stands free where what
+/// comes next lies behind, or nothing does.
 void ScanComponents::examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
                                 std::uint32_t pixel, std::int32_t direction)
 {
   constexpr float kBehind = 0.3F;    // [m]
   constexpr std::int32_t kNext = 3;  // columns in which what comes next is looked for
-  ScanComponent& c = parts_[part_of_[pixel]];
-  ++c.ends;
+  const std::uint32_t part = part_of_[pixel];
+  ScanComponent& c = parts_[part];
   const auto column = static_cast<std::int32_t>(pixel % cloud.width), columns = static_cast<std::int32_t>(cloud.width);
+  bool is_next = true;  // but for empty columns
   for (std::int32_t k = 1; k <= kNext; ++k)
   {
     const std::int32_t next = column + direction * k;
     if (next < 0 || next >= columns) break;
-    const GroundedReturn& other = returns[pixel + static_cast<std::uint32_t>(direction * k)];
-    if (!other.isReturn()) continue;
+    const std::uint32_t beyond = pixel + static_cast<std::uint32_t>(direction * k);
+    const GroundedReturn& other = returns[beyond];
+    if (!other.isReturn())
+    {
+      is_next = is_next && has_return_[static_cast<std::size_t>(next)] == 0;
+      continue;
+    }
+    if (is_next && part_of_[beyond] == part) return;
+    ++c.ends;
     c.free_ends += other.range > returns[pixel].range + kBehind ? 1U : 0U;
     return;
   }
-  ++c.free_ends;
+  ++c.ends, ++c.free_ends;
 }
 }  // namespace lidar_panoptic_clustering

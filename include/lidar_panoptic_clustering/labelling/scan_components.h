@@ -99,6 +99,7 @@ private:
   void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
   void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
+  void findColumns(const std::vector<GroundedReturn>& returns);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
                   std::int32_t direction);
 
@@ -111,6 +112,7 @@ private:
   std::vector<std::uint32_t> begin_of_run_;  ///< in pixels_; a run lies in one row, and the runs one after the other
   std::vector<std::uint32_t> pixel_before_;  ///< by column: that of the last return above the ground
   std::vector<std::uint32_t> feet_;
+  std::vector<std::uint8_t> has_return_;  ///< by column
   std::vector<Pair> loose_;  ///< runs closer than the link, not the step
   std::vector<std::uint32_t> part_of_run_;
   std::vector<ScanComponent> parts_, components_;
