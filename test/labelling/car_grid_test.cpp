@@ -24,11 +24,29 @@ std::vector<SceneBox> carAt(float x, float y)
   return boxes;
 }
 
+/// As 1,792 firings lie in an image of 2,048 columns: each eighth column is empty.
+LabelledCloud withEmptyColumns(const LabelledCloud& cloud, std::vector<int>& hits)
+{
+  LabelledCloud wider = emptyCloud(cloud.height, cloud.width / 7 * 8);
+  std::vector<int> wider_hits(wider.size(), kMissed);
+  for (std::uint32_t row = 0; row < wider.height; ++row)
+    for (std::uint32_t column = 0; column < wider.width; ++column)
+    {
+      if (column % 8 == 7) continue;
+      const std::size_t from = std::size_t{row} * cloud.width + column / 8 * 7 + column % 8;
+      wider.at(column, row) = cloud.points[from];
+      wider_hits[std::size_t{row} * wider.width + column] = hits[from];
+    }
+  hits = wider_hits;
+  return wider;
+}
+
 /// Share of the car's returns that are labelled as an object; 1 where it has hardly any.
-double shareFound(const SensorModel& sensor, const RayScene& scene, GroundLabeler& labeler)
+double shareFound(const SensorModel& sensor, const RayScene& scene, GroundLabeler& labeler, bool empty_columns = false)
 {
   std::vector<int> hits;
   LabelledCloud cloud = castScene(scene, sensor, 120.0F, hits);
+  if (empty_columns) cloud = withEmptyColumns(cloud, hits);
   labeler.label(cloud);
   int count = 0, found = 0;
   for (std::size_t i = 0; i < hits.size(); ++i)
@@ -56,6 +74,22 @@ TEST_P(CarGrid, ACarOnFlatGroundIsFoundAtEveryDistance)
         EXPECT_GE(shareFound(sensor, scene, labeler), 0.5)
             << GetParam() << " at " << height << " m: car " << distance << " m ahead, " << gap << " m to the side";
       }
+}
+
+TEST_P(CarGrid, AColumnWithoutAFiringIsNoGap)
+{
+  SensorModel sensor = SensorModel::load(GetParam());
+  sensor.columns = 1792;
+  GroundLabeler labeler{GroundLabelerConfig{}};
+  for (const float gap : {-0.9F, 3.6F, 5.0F, 12.0F})
+    for (float distance = 4.0F; distance < 20.0F; distance += 2.0F)
+    {
+      RayScene scene;
+      scene.mount_height = 1.8F;
+      scene.boxes = carAt(distance, gap);
+      EXPECT_GE(shareFound(sensor, scene, labeler, true), 0.5)
+          << GetParam() << ": car " << distance << " m ahead, " << gap << " m to the side";
+    }
 }
 
 INSTANTIATE_TEST_SUITE_P(Labeler, CarGrid, testing::ValuesIn(SensorModel::shippedNames()));
