@@ -113,7 +113,7 @@ private:
   std::vector<std::uint32_t> pixel_before_;  ///< by column: that of the last return above the ground
   std::vector<std::uint32_t> feet_;
   std::vector<std::uint8_t> has_return_;  ///< by column
-  std::vector<Pair> loose_;  ///< runs closer than the link, not the step
+  std::vector<Pair> loose_;               ///< runs closer than the link, not the step
   std::vector<std::uint32_t> part_of_run_;
   std::vector<ScanComponent> parts_, components_;
   std::vector<std::uint32_t> component_of_part_;
