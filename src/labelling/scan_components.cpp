@@ -69,6 +69,7 @@ void ScanComponents::start(std::uint32_t rows, std::uint32_t columns, const Dist
   begin_of_run_.clear();
   loose_.clear();
   pixel_before_.assign(columns, kNone);
+  has_return_.assign(columns, 0);
 }
 
 void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
@@ -79,7 +80,6 @@ void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<Ground
   const bool highest_first = isHighestFirst(cloud, returns);
   examineTops(cloud, highest_first);
   examineFeet(returns, highest_first);
-  findColumns(returns);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run) measureRun(cloud, returns, run);
   components_.clear();
   for (std::uint32_t part = 0; part < parts_.size(); ++part)
@@ -165,6 +165,9 @@ void ScanComponents::addRow(std::uint32_t row, const LabelledCloud& cloud, const
   const std::uint32_t begin = row * columns_;
   const GroundedReturn* const at = returns.data() + begin;
   const float above = distances_.above;
+  std::uint8_t* const has_return = has_return_.data();
+  for (std::uint32_t column = 0; column < columns_; ++column)
+    has_return[column] |= static_cast<std::uint8_t>(at[column].isReturn());
   for (std::uint32_t column = 0; column < columns_; ++column)
     if (at[column].height >= above) linker.add(begin + column, column);  // false for no return too
   if (full_turn_) linker.closeRow();
@@ -287,17 +290,8 @@ void ScanComponents::measureRun(const LabelledCloud& cloud, const std::vector<Gr
   c.triples += triples, c.rough_triples += rough_triples;
 }
 
-/// An image of more columns than firings has a column without any return now and then.
-void ScanComponents::findColumns(const std::vector<GroundedReturn>& returns)
-{
-  has_return_.assign(columns_, 0);
-  for (std::size_t row = 0; row < returns.size(); row += columns_)
-    for (std::uint32_t column = 0; column < columns_; ++column)
-      has_return_[column] |= static_cast<std::uint8_t>(returns[row + column].isReturn());
-}
-
-/// A part ends with this pixel, unless it goes on beyond columns that have no return at all; it stands free where what
-/// comes next lies behind, or nothing does.
+/// A part ends with this pixel, unless it goes on beyond columns that have no return at all, as an image of more
+/// columns than firings has now and then; it stands free where what comes next lies behind, or nothing does.
 void ScanComponents::examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
                                 std::uint32_t pixel, std::int32_t direction)
 {

@@ -99,7 +99,6 @@ private:
   void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
   void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
-  void findColumns(const std::vector<GroundedReturn>& returns);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
                   std::int32_t direction);
 
