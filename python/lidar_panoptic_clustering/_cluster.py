@@ -6,7 +6,7 @@ import queue
 import statistics
 import time
 import uuid
-from concurrent.futures import CancelledError
+from concurrent.futures import CancelledError, Future
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ._connect import POLL_S, import_problem
@@ -18,6 +18,8 @@ LEAST_AHEAD = 12  # and what all have together, so that tasks go out by several
 COPIES = 3  # times a part is begun before it is given up
 LEAST_PATIENCE_S = 60.0
 WORKERS_EVERY_S = 2.0
+FETCH_S = 2.0  # after which results are fetched worker by worker
+NO_PART = -1  # in place of a part's order
 
 
 class Outcome(NamedTuple):
@@ -39,6 +41,13 @@ class _Flight:
         self.futures: Dict[str, Any] = {}
         self.begun = 0
         self.since = time.monotonic()
+
+
+class _Fetch:
+    """Results on their way, of the parts of these orders."""
+
+    def __init__(self, futures: Dict[int, Any], response: "Future[Dict[str, Any]]") -> None:
+        self.futures, self.response, self.since = futures, response, time.monotonic()
 
 
 class Run:
@@ -70,6 +79,9 @@ class Run:
         self._patience_s, self._take, self._skip, self._name_of = patience_s, take, skip, name_of
         self._id = uuid.uuid4().hex[:8]
         self._flights: Dict[int, _Flight] = {}
+        self._finished: Dict[int, Any] = {}  # futures whose results are to be fetched, by the part's order
+        self._from_all: Optional[_Fetch] = None
+        self._from_worker: Dict[str, _Fetch] = {}
         self._ended: "queue.Queue[Tuple[int, str]]" = queue.Queue()
         self._again: List[Part] = []
         self._suspects: List[Part] = []  # of one scan: it, or what was on the same worker, ended the worker
@@ -78,7 +90,7 @@ class Run:
         self._looked = 0.0
         self._seen_workers = time.monotonic()
         self._durations: List[float] = []
-        self._failure: Optional[Tuple[int, str]] = None  # of which part, -1 for the cluster itself
+        self._failure: Optional[Tuple[int, str]] = None  # of which part, NO_PART for the cluster itself
 
     def run(self, parts: Iterator[Part], progress: Progress, stopped: Callable[[], bool]) -> Outcome:
         """Until all parts are done, one failed, or ``stopped()``. What is on its way by then is given up."""
@@ -94,6 +106,8 @@ class Run:
                 if self._failure is not None and all(f.order > self._failure[0] for f in self._flights.values()):
                     break
         finally:
+            for fetch in [*self._from_worker.values(), *([self._from_all] if self._from_all else [])]:
+                fetch.response.cancel()
             self._cancel([future for flight in self._flights.values() for future in flight.futures.values()])
             self._flights.clear()
         order, reason = self._failure or (0, None)
@@ -116,7 +130,7 @@ class Run:
             self._seen_workers, self._window = now, max(AHEAD * threads, LEAST_AHEAD)
         elif now - self._seen_workers > self._patience():
             what = "no worker is left" if status == "running" else f"the scheduler is gone (connection {status})"
-            self._fail(-1, f"{what} since {now - self._seen_workers:.0f} s")
+            self._fail(NO_PART, f"{what} since {now - self._seen_workers:.0f} s")
 
     def _threads(self) -> Dict[str, int]:
         """By worker; none where the scheduler is gone."""
@@ -167,33 +181,90 @@ class Run:
                 ended.append(self._ended.get_nowait())
         except queue.Empty:
             pass
-        finished: Dict[int, Any] = {}
         for order, key in ended:
             flight = self._flights.get(order)
             future = flight.futures.get(key) if flight else None
             if flight is None or future is None:
                 continue  # a copy of a part that is done
             if future.status == "finished":
-                finished[order] = future
+                self._finished[order] = future
             elif future.status == "error":
                 self._judge(flight, key, future, progress)
             else:
-                self._fail(-1, f"the scheduler is gone, or gave up a task ({future.status}: {key})")
-        self._finish(finished, progress)
+                self._fail(NO_PART, f"the scheduler is gone, or gave up a task ({future.status}: {key})")
+        self._fetch_results(progress)
 
-    def _finish(self, finished: Dict[int, Any], progress: Progress) -> None:
-        """Fetches results, several at a time, and has them counted."""
-        if not finished:
-            return
+    def _fetch(self, futures: Dict[int, Any]) -> "_Fetch":
+        # not Client.gather(), which makes one of several, and cancels all with one
+        response = self._client.scheduler.gather(keys=[future.key for future in futures.values()])
+        fetch = _Fetch(futures, asyncio.run_coroutine_threadsafe(response, self._client.loop.asyncio_loop))
+        fetch.response.add_done_callback(lambda _: self._ended.put((NO_PART, "")))  # wakes the driver
+        return fetch
+
+    def _fetch_results(self, progress: Progress) -> None:
+        """Has results fetched, several at a time, and counted, without waiting for any.
+
+        A worker may end a part and then answer no more. What does not come is fetched worker by worker, and from one
+        that owes an answer nothing else is asked; its parts become late, and are begun elsewhere.
+        """
+        for worker, fetch in list(self._from_worker.items()):
+            if fetch.response.done():
+                del self._from_worker[worker]
+                self._finish(fetch, progress)
+        if self._from_all is not None:
+            if self._from_all.response.done():
+                self._finish(self._from_all, progress)
+            elif time.monotonic() - self._from_all.since < FETCH_S:
+                return
+            else:
+                self._from_all.response.cancel()
+                for worker, futures in self._by_worker(self._from_all.futures).items():
+                    if worker in self._from_worker:
+                        self._finished.update(futures)
+                    else:
+                        self._from_worker[worker] = self._fetch(futures)
+            self._from_all = None
+        finished, self._finished = self._finished, {}
+        futures = {}
+        for order, future in finished.items():
+            if order not in self._flights:
+                continue  # a copy was done first
+            if future.status == "finished":
+                futures[order] = future
+            elif future.status == "error":
+                self._ended.put((order, future.key))
+            else:
+                self._finished[order] = future  # its worker ended with the result, and the task was begun anew
+        if self._from_worker:
+            for worker, owed in self._by_worker(futures).items():
+                self._finished.update(owed if worker in self._from_worker else {})
+            futures = {order: future for order, future in futures.items() if order not in self._finished}
+        if futures:
+            self._from_all = self._fetch(futures)
+
+    def _by_worker(self, futures: Dict[int, Any]) -> Dict[str, Dict[int, Any]]:
+        """Finished parts by the worker that has the result."""
+        by_worker: Dict[str, Dict[int, Any]] = {}
+        if futures and self._client.status == "running":
+            holders = self._client.who_has(list(futures.values()))
+            for order, future in futures.items():
+                by_worker.setdefault(next(iter(holders.get(future.key, ())), ""), {})[order] = future
+        return by_worker
+
+    def _finish(self, fetch: "_Fetch", progress: Progress) -> None:
         try:
-            results = self._client.gather(list(finished.values()))
+            response = fetch.response.result()
         except (OSError, asyncio.CancelledError, CancelledError) as error:
-            self._fail(-1, f"the scheduler is gone ({type(error).__name__} {error})")
+            self._fail(NO_PART, f"the scheduler is gone ({type(error).__name__} {error})")
             return
-        for order, result in zip(finished, results):
+        if response["status"] != "OK":  # a worker ended before it handed its results over
+            self._finished.update(fetch.futures)
+            return
+        for order, future in fetch.futures.items():
             flight = self._flights.get(order)
             if flight is None:
                 continue
+            result = response["data"][future.key]
             self._durations = self._durations[-99:] + [time.monotonic() - flight.since]
             self._drop(flight)
             for scan, reason in result["skipped"]:
@@ -248,6 +319,9 @@ class Run:
         if not late or self._client.status != "running":
             return
         holding = {key: worker for worker, keys in self._client.processing().items() for key in keys}
+        ended = {key: future for flight in late for key, future in flight.futures.items() if key not in holding}
+        for key, has in self._client.who_has(list(ended.values())).items() if ended else ():
+            holding.update({key: has[0]} if has else {})  # it ended the part, and does not hand the result over
         workers = set(self._threads())
         for flight in late:
             holders = {holding[key] for key in flight.futures if key in holding}

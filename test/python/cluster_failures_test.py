@@ -1,7 +1,9 @@
 """The commands `benchmark` and `label` where workers, scans or the user end them."""
 import json
 import os
+import pathlib
 import signal
+import time
 
 import pytest
 from cluster_runs import data, files, quality, run, slow, slow_report, start, wait_for, workers_of  # noqa: F401
@@ -69,6 +71,55 @@ def test_a_scan_that_cannot_be_read(data, tmp_path, benchmark):
     assert status == 0, err
     assert 'skipped 03/000011' in err
     assert quality(tmp_path / 'r.json') == quality(tmp_path / 'cpp.json')
+
+
+class StopsItsWorker:
+    """A result that stops the first worker that hands it over."""
+
+    def __init__(self, stopped):
+        self.stopped = stopped
+
+    def __reduce__(self):
+        try:
+            with open(self.stopped, 'x') as file:
+                file.write(str(os.getpid()))
+        except FileExistsError:
+            return bytes, ()
+        os.kill(os.getpid(), signal.SIGSTOP)
+        return bytes, ()
+
+
+def test_a_worker_that_ends_a_part_and_then_answers_no_more(tmp_path):
+    """Its result is not waited for: another worker is given the part, and the others' results count meanwhile."""
+    from lidar_panoptic_clustering import _cluster
+    from lidar_panoptic_clustering._connect import Cluster, connect
+    from lidar_panoptic_clustering._progress import Progress
+    from lidar_panoptic_clustering._tasks import Part, Work
+
+    stopped = str(tmp_path / 'stopped')
+
+    def run_part(_, part):
+        report = StopsItsWorker(stopped) if part.begin == 5 else b''
+        return {'used': part.end - part.begin, 'resumed': 0, 'skipped': [], 'report': report}
+
+    class Notes(Progress):
+        def note(self, text):
+            notes.append(text)
+
+    taken, notes = [], []
+    parts = [Part('00', scan, scan + 1, f'{scan:06}') for scan in range(20)]
+    with pytest.MonkeyPatch.context() as patch, connect(Cluster(None, None, 2, None, 60.0)) as client:
+        patch.setattr(_cluster, 'run_part', run_part)
+        run_all = _cluster.Run(client, 'test', Work((), False, ''), False, 3.0, taken.append,
+                               lambda scan, reason: None, lambda _, scan: f'{scan:06}')
+        begin = time.monotonic()
+        outcome = run_all.run(iter(parts), Notes('test', 20), lambda: False)
+        seconds = time.monotonic() - begin
+        os.kill(int(pathlib.Path(stopped).read_text()), signal.SIGKILL)
+    assert outcome == (False, False, None)
+    assert sum(result['used'] for result in taken) == 20
+    assert any('begun on another worker' in note for note in notes), notes
+    assert seconds < 25.0, 'before the scheduler gives the worker up, after 30 s'
 
 
 @pytest.mark.parametrize('keep_going', [True, False])
