@@ -31,12 +31,12 @@ VoxelKey GridSearch::keyOf(const pcl::PointXYZ& point) const
   return {cell(point.x), cell(point.y), cell(point.z)};
 }
 
-void GridSearch::setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices)
+GridSearch::BoolFromPcl115 GridSearch::setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices)
 {
   input_ = cloud;
   indices_ = indices;
   const auto count = static_cast<std::uint32_t>(indices ? indices->size() : cloud->size());
-  const auto indexOf = [&](std::uint32_t k) { return indices ? (*indices)[k] : static_cast<pcl::index_t>(k); };
+  const auto indexOf = [&](std::uint32_t k) { return indices ? (*indices)[k] : static_cast<Index>(k); };
   const auto pointAt = [&](std::uint32_t k) -> const pcl::PointXYZ& { return (*cloud)[indexOf(k)]; };
   index_.reset(index_.size());
   cells_.clear();
@@ -64,6 +64,7 @@ void GridSearch::setInputCloud(const PointCloudConstPtr& cloud, const IndicesCon
       entries_[cells_[cell_of_point_[k]].end++] = {p.x, p.y, p.z, indexOf(k)};
     }
   around_.resize(cells_.size() * kAround);
+  return static_cast<BoolFromPcl115>(true);
 }
 
 int GridSearch::radiusSearch(const pcl::PointXYZ& point, double radius, pcl::Indices& k_indices,
@@ -164,7 +165,7 @@ void GridSearch::order(unsigned int most, pcl::Indices& indices, std::vector<flo
 {
   const bool is_cut = most > 0 && most < indices.size();
   if (!sorted_results_ && !is_cut) return;
-  std::vector<std::pair<float, pcl::index_t>> pairs;
+  std::vector<std::pair<float, Index>> pairs;
   for (std::size_t k = 0; k < indices.size(); ++k) pairs.emplace_back(distances[k], indices[k]);
   std::sort(pairs.begin(), pairs.end());
   if (is_cut) pairs.resize(most);

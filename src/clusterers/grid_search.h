@@ -2,10 +2,12 @@
 
 #include "lidar_panoptic_clustering/geometry/voxel_index.h"
 
+#include <pcl/pcl_base.h>
 #include <pcl/point_types.h>
 #include <pcl/search/search.h>
 
 #include <cstdint>
+#include <utility>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -21,7 +23,13 @@ namespace lidar_panoptic_clustering
 /// Then all searches together are about linear in the points, however many lie within the radius.
 class GridSearch : public pcl::search::Search<pcl::PointXYZ>
 {
+  using Search = pcl::search::Search<pcl::PointXYZ>;
+
 public:
+  using Index = pcl::Indices::value_type;  ///< pcl::index_t, which PCL 1.10 has not
+  /// What setInputCloud() returns: nothing, and from PCL 1.15 on whether the cloud can be searched.
+  using BoolFromPcl115 = decltype(std::declval<Search&>().setInputCloud(PointCloudConstPtr()));
+
   /// How often radius searches return a point of the cloud given last.
   enum HandOut
   {
@@ -32,7 +40,8 @@ public:
   explicit GridSearch(double cell, HandOut hand_out = kAlways);
 
   /// Linear in the points. Coordinates of up to 2^20 cells.
-  void setInputCloud(const PointCloudConstPtr& cloud, const IndicesConstPtr& indices = IndicesConstPtr()) override;
+  BoolFromPcl115 setInputCloud(const PointCloudConstPtr& cloud,
+                               const IndicesConstPtr& indices = IndicesConstPtr()) override;
 
   using Search::nearestKSearch;
   using Search::radiusSearch;
@@ -50,7 +59,7 @@ private:
   struct Entry
   {
     float x, y, z;
-    pcl::index_t index;
+    Index index;
   };
   /// Entries [begin, end) that can still be found, and up to 27 cells that hold such ones.
   struct Cell
