@@ -19,7 +19,8 @@ using Sequence = TemporalQuality::Sequence;
 std::uint64_t number(const json& value, const std::string& what, std::uint64_t max)
 {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > max)
-    throw std::invalid_argument("key '" + what + "' holds " + briefly(value) + ", expected a whole number");
+    throw std::invalid_argument(std::string("key '") + what + "' holds " + briefly(value) +
+                                ", expected a whole number");
   return value.get<std::uint64_t>();
 }
 
@@ -34,10 +35,10 @@ std::uint64_t points(const json& value, const std::string& what)
 }
 
 /// A tube's row of `size` numbers.
-const json& row(const json& value, const std::string& what, std::size_t size)
+const json& row(const json& value, const char* what, std::size_t size)
 {
   if (!value.is_array() || value.size() != size)
-    throw std::invalid_argument("key '" + what + "' holds " + briefly(value) + ", expected rows of " +
+    throw std::invalid_argument(std::string("key '") + what + "' holds " + briefly(value) + ", expected rows of " +
                                 std::to_string(size) + " numbers");
   return value;
 }

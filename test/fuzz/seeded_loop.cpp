@@ -96,7 +96,7 @@ private:
     switch (upTo(7))
     {
       case 0:
-        if (at < input.size()) input[at] ^= static_cast<std::uint8_t>(1U << upTo(8));
+        if (at < input.size()) input[at] = static_cast<std::uint8_t>(input[at] ^ (1U << upTo(8)));
         break;
       case 1:
         if (at < input.size()) input[at] = static_cast<std::uint8_t>(random_());
