@@ -19,8 +19,7 @@ using Sequence = TemporalQuality::Sequence;
 std::uint64_t number(const json& value, const std::string& what, std::uint64_t max)
 {
   if (!value.is_number_unsigned() || value.get<std::uint64_t>() > max)
-    throw std::invalid_argument(std::string("key '") + what + "' holds " + briefly(value) +
-                                ", expected a whole number");
+    throw std::invalid_argument("key '" + what + "' holds " + briefly(value) + ", expected a whole number");
   return value.get<std::uint64_t>();
 }
 
