@@ -105,7 +105,7 @@ py::object segment(ArraySegmenter& segmenter, const py::object& given_points, co
         [&] { segmenter.segment(points.view, labels.view, has_ring ? &ring.view : nullptr, instances_to, voted_to); });
   }
   if (return_labels) return py::make_tuple(instances, voted);
-  return std::move(instances);
+  return py::object(std::move(instances));
 }
 
 py::dict dictOf(const ParameterMap& parameters)

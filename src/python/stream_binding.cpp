@@ -107,7 +107,7 @@ py::object track(ArrayTracker& tracker, const py::object& given_points, const py
                     { tracker.track(points.view, labels.view, instances.view, time_s, pose, tracks_to, voted_to); });
   }
   if (return_labels) return py::make_tuple(tracks, voted);
-  return std::move(tracks);
+  return py::object(std::move(tracks));
 }
 
 py::array trackArray(ArrayTracker& tracker)
