@@ -49,7 +49,8 @@ void measureSizes(const std::string& algorithm, const std::string& kind, const s
 {
   for (const std::string rings : {"8", "16", "32", "64", "128", "256"})
   {
-    const Scans& scans = scene(kind + rings);
+    const std::string name = kind + rings;
+    const Scans& scans = scene(name);
     const double things = meanThings(scans), copy = leastCopy();
     const double seconds = leastSeconds(scans, algorithm);
     std::printf("%s,%s,%s,%.0f,%.3f,%.2f\n", algorithm.c_str(), what.c_str(), rings.c_str(), things, 1e3 * seconds,

@@ -167,7 +167,7 @@ void ScanComponents::addRow(std::uint32_t row, const LabelledCloud& cloud, const
   const float above = distances_.above;
   std::uint8_t* const has_return = has_return_.data();
   for (std::uint32_t column = 0; column < columns_; ++column)
-    has_return[column] |= static_cast<std::uint8_t>(at[column].isReturn());
+    has_return[column] = static_cast<std::uint8_t>(has_return[column] | at[column].isReturn());
   for (std::uint32_t column = 0; column < columns_; ++column)
     if (at[column].height >= above) linker.add(begin + column, column);  // false for no return too
   if (full_turn_) linker.closeRow();
