@@ -1,10 +1,13 @@
 #include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 
 #include <gtest/gtest.h>
+#include <boost/shared_ptr.hpp>
+#include <boost/weak_ptr.hpp>
 
 #include <algorithm>
 #include <atomic>
 #include <deque>
+#include <memory>
 #include <mutex>
 #include <random>
 #include <set>
@@ -16,6 +19,18 @@ namespace lidar_panoptic_clustering
 namespace
 {
 using Pool = CloudPool<PanopticCloud>;
+
+/// PCL's pointers are Boost's up to 1.10.
+template <typename T>
+std::weak_ptr<T> weakPointerTo(const std::shared_ptr<T>& pointer)
+{
+  return pointer;
+}
+template <typename T>
+boost::weak_ptr<T> weakPointerTo(const boost::shared_ptr<T>& pointer)
+{
+  return pointer;
+}
 
 TEST(CloudPool, aCloudLetGoIsTheNextOne)
 {
@@ -77,7 +92,7 @@ TEST(CloudPool, aWeakPointerIsNotWokenByTheNextUse)
 {
   Pool pool;
   auto cloud = pool.take();
-  PanopticCloud::Ptr::weak_type weak = cloud;
+  auto weak = weakPointerTo(cloud);
   cloud.reset();
   EXPECT_TRUE(weak.expired());
   EXPECT_EQ(pool.idle(), 0U) << "its count is still in use";
