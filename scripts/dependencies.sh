@@ -42,7 +42,7 @@ can_use_sudo() {
 
 # Installs with apt those of the packages given that are missing, as root or with sudo.
 install_packages() {
-  local missing as_root=() log
+  local missing as_root=() log unknown
   command -v dpkg-query > /dev/null ||
     fail "no dpkg here: expected Debian 11 to 13 or Ubuntu 20.04; on other systems install ROS 1 and PCL, then use cmake"
   mapfile -t missing < <(missing_packages "$@")
@@ -58,6 +58,10 @@ install_packages() {
   if ! { "${as_root[@]}" apt-get update &&
     "${as_root[@]}" env DEBIAN_FRONTEND=noninteractive apt-get install -y --no-install-recommends "${missing[@]}"; } \
     > "$log" 2>&1 < /dev/null; then
+    unknown=$(sed -n 's/^E: Unable to locate package //p' "$log" | tr '\n' ' ')
+    [ -z "$unknown" ] ||
+      fail "apt knows no package ${unknown% } here. Where ROS 1 comes from ROS's own packages, as on Ubuntu 20.04, install
+  it in /opt/ros/noetic first (http://wiki.ros.org/noetic/Installation). The library without ROS: ./check --without-ros"
     tail -n 20 "$log" >&2
     fail "apt-get could not install the packages; its output is in $log"
   fi

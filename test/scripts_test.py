@@ -94,6 +94,15 @@ class Scripts(unittest.TestCase):
         self.assertEqual(done.stderr, 'check: error: 2 packages are missing, and this user can install none. Ask for:\n'
                          '  apt-get update && apt-get install -y --no-install-recommends g++ libpcl-dev\n')
 
+    def test_a_system_without_packages_of_ros_is_told_where_they_come_from(self):
+        tree = self.copy_scripts('tree')
+        done = self.bash(tree, 'missing_packages() { printf "%s\\n" catkin libpcl-ros-dev; }\nid() { echo 0; }\n'
+                         'apt-get() { [ "$1" = update ] || { echo "E: Unable to locate package libpcl-ros-dev"; false; }; }\n'
+                         'env() { shift; "$@"; }\ninstall_dependencies with_ros')
+        self.assertEqual(done.returncode, 1)
+        self.assertRegex(done.stderr, r'^check: error: apt knows no package libpcl-ros-dev here\. .*Ubuntu 20\.04.*\n'
+                         r'.*/opt/ros/noetic.* ./check --without-ros\n$')
+
     def test_without_ros_no_package_of_ros_is_asked_for(self):
         tree = self.copy_scripts('tree')
         core = self.bash(tree, 'required_packages without_ros').stdout.split()
