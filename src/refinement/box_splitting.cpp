@@ -1,6 +1,7 @@
 #include "lidar_panoptic_clustering/refinement/box_splitting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace lidar_panoptic_clustering
@@ -100,8 +101,10 @@ void BoxSplitter::joinRest(const std::uint32_t* leaves, std::uint32_t count, int
       part_of_[leaves[k]] = nearestPart(whole_[leaves[k]].outline());
 }
 
+/// By gap, then by where the part begins.
 std::uint32_t BoxSplitter::nearestPart(const Footprint& outline) const
 {
+  constexpr float kRounding = 1e-3F;  // of the gap, and [m]
   const auto gap = [&](std::uint32_t k)
   {
     const Footprint& other = whole_[sizeable_[k]].outline();
@@ -110,7 +113,11 @@ std::uint32_t BoxSplitter::nearestPart(const Footprint& outline) const
   std::uint32_t nearest = 0;
   auto least = gap(0);
   for (std::uint32_t k = 1; k < sizeable_.size(); ++k)
+  {
+    const float distance = std::sqrt(std::get<0>(least));
+    if (!outline.mayBeCloser(whole_[sizeable_[k]].outline(), distance + kRounding * (distance + 1.0F))) continue;
     if (const auto found = gap(k); found < least) nearest = k, least = found;
+  }
   return nearest;
 }
 }  // namespace lidar_panoptic_clustering
