@@ -3,6 +3,8 @@
 #include "geometry/z_curve.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
 #include <iterator>
 #include <numeric>
 #include <stdexcept>
@@ -13,6 +15,7 @@ namespace lidar_panoptic_clustering
 namespace
 {
 constexpr float kSideInDiagonals = 0.7071F;  // below sqrt(1/2): two points of a cell are closer than its diagonal
+constexpr float kRounding = 1.0001F;         // no block is to be passed over that holds a close point
 constexpr std::size_t kFew = 48;             // points that are sorted faster by comparison
 
 /// std::floor is a call to the C library on processors without SSE 4.1.
@@ -236,6 +239,12 @@ bool PlanarHierarchy::isSettled(const Tile& tile) const
 void PlanarHierarchy::linkTiles(int level, int reach, float distance)
 {
   findUniform();
+  const float sides = kRounding * distance * cells_per_m_ / static_cast<float>(1 << level);
+  for (int rows = 0; rows <= reach; ++rows)
+  {
+    const float up = static_cast<float>(std::max(0, rows - 1));  // rows between the blocks
+    reach_of_row_[rows] = std::min(reach, 1 + static_cast<int>(std::sqrt(std::max(0.0F, sides * sides - up * up))));
+  }
   in_window_ = nullptr;
   for (const Tile& tile : tiles_)
     if (!isSettled(tile)) linkTile(tile, level, reach, distance);
@@ -275,7 +284,7 @@ void PlanarHierarchy::moveWindow(const Tile& tile, int level)
   };
   if (in_window_ != nullptr && in_window_ + 1 == &tile && in_window_->place + 1 == tile.place)
   {
-    window_begin_ = (window_begin_ + side) % kWindow;
+    window_begin_ = (window_begin_ + static_cast<std::uint32_t>(side)) % kWindow;
     for (std::uint32_t& row : rows_) row >>= side;
     for (int y = 0; y < side; ++y) rows_[y] &= ~0U << side;  // what is on the left looks here
   }
@@ -297,7 +306,6 @@ void PlanarHierarchy::linkTile(const Tile& tile, int level, int reach, float dis
 {
   moveWindow(tile, level);
   const int side = kSide >> level;
-  const std::uint32_t window = (2U << (2 * reach)) - 1U;
   for (int y = 0; y < side; ++y)
     for (unsigned mine = tile.rows[level][y]; mine != 0; mine &= mine - 1U)
     {
@@ -307,7 +315,9 @@ void PlanarHierarchy::linkTile(const Tile& tile, int level, int reach, float dis
       {
         // below: only the tile on the right; beside: only what is right of it
         const int first = row < y ? 2 * side : row == y ? x + 1 : 0;
-        std::uint32_t others = rows_[row] & window << (x - reach) & ~0U << first;
+        const int columns = reach_of_row_[std::abs(row - y)];
+        const std::uint32_t window = ((2U << (2 * columns)) - 1U) << (x - columns);
+        std::uint32_t others = rows_[row] & window & ~0U << first;
         for (; others != 0; others &= others - 1U) linkBlocks(from, windowAt(row, __builtin_ctz(others)), distance);
       }
     }

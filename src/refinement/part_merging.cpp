@@ -16,12 +16,15 @@ constexpr int kMostNeighbours = 64, kFewestNeighbours = 4;
 constexpr int kManyPairs = 1 << 18;  // 64 neighbours for as many objects as no street has
 constexpr int kMostCells = 256;      // an outline that covers more fits no class
 
-/// Whether two outlines that far apart can be one object of the class.
-bool fit(const Footprint& a, const Footprint& b, const ClassInfo& info, float squared_gap)
+/// How much larger than usual two parts that far apart may be together.
+float slackOf(const ClassInfo& info, float squared_gap)
 {
-  const float link = info.link_distance_m, reach = kGapInLinks * link;
-  if (squared_gap >= reach * reach) return false;
-  const float slack = squared_gap < link * link ? kSlack : 1.0F;
+  return squared_gap < info.link_distance_m * info.link_distance_m ? kSlack : 1.0F;
+}
+
+/// Whether two outlines together fit the class.
+bool fit(const Footprint& a, const Footprint& b, const ClassInfo& info, float slack)
+{
   return a.fitsWith(b, slack * info.length_m, slack * info.width_m);
 }
 
@@ -145,11 +148,13 @@ void PartMerger::compareWithEarlier(std::uint32_t a, const ClassInfo& info)
                  if (class_of_[b] != class_of_[a] || seen_[b] == a) continue;
                  seen_[b] = a;
                  --left;
-                 const Footprint& theirs = outlines_[b];
-                 if (!mine.mayBeCloser(theirs, kRounding * reach) || !fit(mine, theirs, info, 0.0F)) continue;
-                 const Footprint::Gap gap = mine.gapTo(theirs);
-                 if (fit(mine, theirs, info, gap.squaredDistance()) && !isParted(a, b, gap))
-                   pairs_.push_back({gap.squaredDistance(), b, a});
+                 if (!mine.mayBeCloser(outlines_[b], kRounding * reach) || !fit(mine, outlines_[b], info, kSlack))
+                   continue;
+                 const Footprint::Gap gap = mine.gapTo(outlines_[b]);
+                 const float squared_gap = gap.squaredDistance(), slack = slackOf(info, squared_gap);
+                 if (squared_gap < reach * reach && (slack == kSlack || fit(mine, outlines_[b], info, slack)) &&
+                     !isParted(a, b, gap))
+                   pairs_.push_back({squared_gap, b, a});
                }
              });
 }
@@ -185,7 +190,8 @@ void PartMerger::merge(const std::vector<RefinedObject>& objects, const ClassTab
   for (const Pair& pair : pairs_)
   {
     const std::uint32_t a = sets_.find(pair.a), b = sets_.find(pair.b);
-    if (a == b || !fit(outlines_[a], outlines_[b], table[class_of_[a]], pair.squared_gap)) continue;
+    const ClassInfo& info = table[class_of_[a]];
+    if (a == b || !fit(outlines_[a], outlines_[b], info, slackOf(info, pair.squared_gap))) continue;
     sets_.unite(a, b);
     outlines_[std::min(a, b)].add(outlines_[std::max(a, b)]);
   }

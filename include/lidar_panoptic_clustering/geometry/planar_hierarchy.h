@@ -54,9 +54,9 @@ public:
   std::size_t pointsLookedAt() const { return cells_.pointsLookedAt() + looked_at_; }
 
 private:
-  static constexpr int kLevels = 3;   // blocks of 1, 2 and 4 cells a side
-  static constexpr int kSide = 8;     // cells a side of a tile
-  static constexpr int kWindow = 32;  // columns of the window, of which three tiles' are in use
+  static constexpr int kLevels = 3;             // blocks of 1, 2 and 4 cells a side
+  static constexpr int kSide = 8;               // cells a side of a tile
+  static constexpr std::uint32_t kWindow = 32;  // columns of the window, of which three tiles' are in use
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   struct Tile
@@ -94,7 +94,10 @@ private:
   void linkBlocks(const Window& from, const Window& to, float distance);
   void moveWindow(const Tile& tile, int level);
   void lookAt(const Tile& tile, int level, int row, int column);
-  Window& windowAt(int row, int column) { return window_[row][(column + window_begin_) % kWindow]; }
+  Window& windowAt(int row, int column)
+  {
+    return window_[row][(static_cast<std::uint32_t>(column) + window_begin_) % kWindow];
+  }
 
   float distance_ = 0.0F, cells_per_m_ = 0.0F;
   std::vector<PlanarSample> added_;
@@ -113,8 +116,9 @@ private:
   std::vector<std::uint32_t> uniform_;  ///< by tile: the component of all its cells, kNone where there are several
   Window window_[2 * kSide][kWindow];   ///< the tile in hand in the middle below, and those beside and above
   std::uint32_t rows_[2 * kSide] = {};  ///< of the window: a bit an occupied block
-  int window_begin_ = 0;                ///< its first column in window_, which it moves around in
+  std::uint32_t window_begin_ = 0;      ///< its first column in window_, which it moves around in
   const Tile* in_window_ = nullptr;     ///< the tile in the middle below
+  int reach_of_row_[4] = {};            ///< blocks either side that may hold close points, by rows up or down
   std::size_t looked_at_ = 0;           ///< points of blocks that hold one
   DisjointSets sets_;
   std::vector<std::uint32_t> component_;
