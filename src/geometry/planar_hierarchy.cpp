@@ -16,6 +16,7 @@ namespace
 {
 constexpr float kSideInDiagonals = 0.7071F;  // below sqrt(1/2): two points of a cell are closer than its diagonal
 constexpr float kRounding = 1.0001F;         // no block is to be passed over that holds a close point
+constexpr std::size_t kManyPoints = 2;       // a cell, in the mean: comparing cells takes its time
 constexpr std::size_t kFew = 48;             // points that are sorted faster by comparison
 
 /// std::floor is a call to the C library on processors without SSE 4.1.
@@ -187,8 +188,11 @@ void PlanarHierarchy::link(float distance)
     if (level > 0) uniteBlocks(level);
     sets_.flatten(component_);
     uniform_.assign(tiles_.size(), kNone);
-    linkTiles(level, 1, distance);  // first, so that most pairs farther apart are joined before their turn
-    sets_.flatten(component_);
+    if (kManyPoints * size() < added_.size())
+    {
+      linkTiles(level, 1, distance);  // first, so that most pairs farther apart are joined before their turn
+      sets_.flatten(component_);
+    }
   }
   else if (level > level_)
   {

@@ -91,13 +91,14 @@ void ClassBridging::sortByGroup(const ThingScan& scan, const ClassTable& table,
                                 const std::vector<RefinedObject>& objects,
                                 const std::vector<std::uint32_t>& object_of_thing)
 {
+  group_of_.clear();
+  for (const RefinedObject& object : objects) group_of_.push_back(table[object.class_index].group);
   things_of_group_.resize(table.groupCount());
   for (auto& things : things_of_group_) things.clear();
   for (std::uint32_t i = 0; i < scan.size(); ++i)
   {
     const std::uint32_t object = object_of_thing[i];
-    if (reach_[object].contains(scan.points[i].x, scan.points[i].y))
-      things_of_group_[table[objects[object].class_index].group].push_back(i);
+    if (reach_[object].contains(scan.points[i].x, scan.points[i].y)) things_of_group_[group_of_[object]].push_back(i);
   }
 }
 
@@ -105,16 +106,15 @@ void ClassBridging::uniteClose(const ThingScan& scan, const std::vector<std::uin
                                const std::vector<std::uint32_t>& object_of_thing)
 {
   cells_.clear(distance);
-  for (const std::uint32_t i : things) cells_.add(scan.points[i].x, scan.points[i].y, i);
+  for (const std::uint32_t i : things) cells_.add(scan.points[i].x, scan.points[i].y, object_of_thing[i]);
   cells_.close();
   cells_.link(distance);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
   {
-    std::uint32_t last = object_of_thing[cells_.firstThing(cells_.components()[cell])];
+    std::uint32_t last = cells_.firstThing(cells_.components()[cell]);
     cells_.forEach(cell,
-                   [&](std::uint32_t thing)
+                   [&](std::uint32_t object)
                    {
-                     const std::uint32_t object = object_of_thing[thing];
                      if (object != last) sets_.unite(object, last);
                      last = object;
                    });

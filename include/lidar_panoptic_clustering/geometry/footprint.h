@@ -38,6 +38,7 @@ public:
   /// Widens the outline to hold another one.
   void add(const Footprint& other)
   {
+    if (!isOutside(other.max_) && !isOutside(other.min_)) return;
     for (const PlanarPoint& p : other.point_) add(p.x, p.y);
   }
 

@@ -64,6 +64,7 @@ private:
   FloatSort<Start> start_sort_;
   std::vector<Extent> extents_;                              ///< parallel to by_min_x_
   std::vector<Reach> reach_;                                 ///< by object
+  std::vector<std::uint32_t> group_of_;                      ///< by object
   std::vector<std::vector<std::uint32_t>> things_of_group_;  ///< within reach of another object
   PlanarHierarchy cells_;                                    ///< of a group's
   DisjointSets sets_;
