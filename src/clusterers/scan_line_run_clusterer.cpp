@@ -48,6 +48,7 @@ void ScanLineRunClusterer::cluster(const ThingScan& scan, std::vector<std::uint3
 {
   looked_at_ = 0;
   lower_.slot = 0xFFFFFFFF;
+  columns_ = scan.columns;
   sortByLink(scan);
   findRuns(scan);
   const auto gap = static_cast<std::uint32_t>(config_.max_line_gap);

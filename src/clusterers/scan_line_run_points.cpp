@@ -53,11 +53,11 @@ float horizontalRange(float x, float y)
   return std::sqrt(x * x + y * y);
 }
 
-/// Layers are half a distance thick; what is far shares the last one.
-std::uint32_t layerOf(float range, float line_distance)
+/// What is far shares the last one.
+std::uint32_t layerOf(float range, float layers_per_m)
 {
-  constexpr float kLayersInDistance = 2.0F, kMostLayers = 1024.0F;
-  return static_cast<std::uint32_t>(std::clamp(range * kLayersInDistance / line_distance, 0.0F, kMostLayers));
+  constexpr float kMostLayers = 1024.0F;
+  return static_cast<std::uint32_t>(std::clamp(range * layers_per_m, 0.0F, kMostLayers));
 }
 }  // namespace
 
@@ -74,16 +74,29 @@ void ScanLineRunClusterer::linkPoints(std::uint32_t upper_slot, std::uint32_t lo
   }
 }
 
+/// Layers are half a distance thick, or where windows hold few points, which are compared as soon as a layer's are
+/// found, one for all.
+float ScanLineRunClusterer::layersPerMetre(std::uint32_t slot) const
+{
+  constexpr float kLayersInDistance = 2.0F;
+  constexpr std::uint64_t kFew = 24;
+  const std::uint32_t begin = slot_begin_[slot], end = slot_begin_[slot + 1];
+  std::uint64_t window = 0;
+  for (std::uint32_t i = begin; i < end; ++i) window += 2 * static_cast<std::uint64_t>(points_[i].window);
+  return window < kFew * columns_ ? 0.0F : kLayersInDistance / line_distance_;
+}
+
 /// Puts a slot's points into layers of about the same range: two points are no nearer than their ranges differ.
 void ScanLineRunClusterer::sortByRange(std::uint32_t slot)
 {
   const std::uint32_t begin = slot_begin_[slot], size = slot_begin_[slot + 1] - begin;
   layer_of_point_.resize(size);
   layer_begin_.assign(1, 0);
+  lower_.layers_per_m = layersPerMetre(slot);
   for (std::uint32_t k = 0; k < size; ++k)
   {
     const Point& q = points_[begin + k];
-    const std::uint32_t layer = layer_of_point_[k] = layerOf(horizontalRange(q.x, q.y), line_distance_);
+    const std::uint32_t layer = layer_of_point_[k] = layerOf(horizontalRange(q.x, q.y), lower_.layers_per_m);
     if (layer + 2 > layer_begin_.size()) layer_begin_.resize(layer + 2, 0);
     ++layer_begin_[layer + 1];
   }
@@ -123,8 +136,8 @@ void ScanLineRunClusterer::linkPoint(const Point& p, int shift)
   const float range = horizontalRange(p.x, p.y), slack = kRangeRounding * range;
   std::uint32_t object = sets_.find(run_of_thing_[p.thing]);
   const std::size_t end =
-      std::min<std::size_t>(layerOf(range + distance + slack, line_distance_) + 1, lower_.layers.size());
-  for (std::size_t k = layerOf(range - distance - slack, line_distance_); k < end; ++k)
+      std::min<std::size_t>(layerOf(range + distance + slack, lower_.layers_per_m) + 1, lower_.layers.size());
+  for (std::size_t k = layerOf(range - distance - slack, lower_.layers_per_m); k < end; ++k)
   {
     Layer& layer = lower_.layers[k];
     if (layer.begin == layer.end) continue;

@@ -32,6 +32,29 @@ bool cross(const PlanarPoint& a, const PlanarPoint& b, const PlanarPoint& c, con
   return turn(a, b, c) * turn(a, b, d) < 0.0 && turn(c, d, a) * turn(c, d, b) < 0.0;
 }
 
+/// The upright rectangle about a side.
+struct Extent
+{
+  float min_x, max_x, min_y, max_y;
+  /// [m^2]
+  float squaredGapTo(const Extent& other) const
+  {
+    const float dx = std::max({0.0F, other.min_x - max_x, min_x - other.max_x});
+    const float dy = std::max({0.0F, other.min_y - max_y, min_y - other.max_y});
+    return dx * dx + dy * dy;
+  }
+};
+
+/// Of the polygon's sides.
+void findExtents(const Polygon& polygon, int n, std::array<Extent, 8>& extents)
+{
+  for (int i = 0; i < n; ++i)
+  {
+    const PlanarPoint &a = polygon[i], &b = polygon[i + 1 < n ? i + 1 : 0];
+    extents[i] = {std::min(a.x, b.x), std::max(a.x, b.x), std::min(a.y, b.y), std::max(a.y, b.y)};
+  }
+}
+
 bool contains(const Polygon& polygon, int n, const PlanarPoint& p)
 {
   if (n < 3) return false;
@@ -46,7 +69,7 @@ int Footprint::corners(Polygon& polygon) const
   // counter-clockwise from +x: +x, +(x + y), +y, -(x - y), -x, -(x + y), -y, +(x - y)
   constexpr int kOrder[] = {0, 2, 1, 7, 4, 6, 5, 3};
   polygon[0] = point_[0];
-  if (min_[0] == max_[0] && min_[1] == max_[1]) return 1;
+  if (isPoint()) return 1;
   int n = 0;
   for (const int k : kOrder)
   {
@@ -94,21 +117,49 @@ bool Footprint::fits(float length, float width) const
   return size.length <= length && size.width <= width;
 }
 
+bool Footprint::fitsWith(const Footprint& other, float length, float width) const
+{
+  const auto extent = [&](int k) { return std::max(max_[k], other.max_[k]) - std::min(min_[k], other.min_[k]); };
+  const float dx = extent(0), dy = extent(1);
+  if (dx * dx + dy * dy <= width * width) return true;  // see fits()
+  // no rectangle is longer in any direction than its diagonal; the diagonals' unit is 1 / sqrt(2) m
+  constexpr float kRounding = 1.001F;
+  const float most = kRounding * (length * length + width * width);
+  const float along = extent(2), against = extent(3);
+  if (dx * dx > most || dy * dy > most || along * along > 2.0F * most || against * against > 2.0F * most) return false;
+  Footprint both = *this;
+  both.add(other);
+  const RectangleSize size = both.smallestRectangle();
+  return size.length <= length && size.width <= width;
+}
+
+/// Sides whose extents are farther apart than what was found are passed over, and where the outlines' extents part
+/// them, none can cross.
 Footprint::Gap Footprint::gapTo(const Footprint& other) const
 {
+  constexpr float kParted = 1e-3F, kRounding = 1e-3F;  // [m], and of the squared distance and of 1 m^2
   Polygon mine, theirs;
   const int m = corners(mine), n = other.corners(theirs);
   Gap best{mine[0], theirs[0]};
-  const auto consider = [&best](const PlanarPoint& from, const PlanarPoint& to)
+  if (m == 1 && n == 1) return best;
+  std::array<Extent, 8> my_extents, their_extents;
+  findExtents(mine, m, my_extents);
+  findExtents(theirs, n, their_extents);
+  const bool may_meet = mayBeCloser(other, kParted);
+  float least = best.squaredDistance();
+  const auto consider = [&](const PlanarPoint& from, const PlanarPoint& to)
   {
     const Gap gap{from, to};
-    if (gap.squaredDistance() < best.squaredDistance()) best = gap;
+    if (const float squared = gap.squaredDistance(); squared < least) best = gap, least = squared;
   };
   for (int i = 0; i < m; ++i)
     for (int j = 0; j < n; ++j)
     {
-      const PlanarPoint &a = mine[i], &b = mine[(i + 1) % m], &c = theirs[j], &d = theirs[(j + 1) % n];
-      if (cross(a, b, c, d)) return {a, a};
+      const float squared_gap = my_extents[i].squaredGapTo(their_extents[j]);
+      if (squared_gap > least + kRounding * (least + 1.0F)) continue;
+      const PlanarPoint &a = mine[i], &b = mine[i + 1 < m ? i + 1 : 0], &c = theirs[j],
+                        &d = theirs[j + 1 < n ? j + 1 : 0];
+      if (may_meet && squared_gap == 0.0F && cross(a, b, c, d)) return {a, a};
       consider(nearestOn(a, b, c), c);
       consider(a, nearestOn(c, d, a));
     }
@@ -117,8 +168,23 @@ Footprint::Gap Footprint::gapTo(const Footprint& other) const
   return best;
 }
 
+/// What lies beside the outline does not cross it; one as thin as a line holds, by rounding, what lies in its line.
+bool Footprint::isBeside(const PlanarPoint& a, const PlanarPoint& b) const
+{
+  constexpr float kParted = 1e-3F;  // [m]
+  const float from[kAxes] = {a.x, a.y, a.x + a.y, a.x - a.y}, to[kAxes] = {b.x, b.y, b.x + b.y, b.x - b.y};
+  bool beside = false;
+  for (int k = 0; k < kAxes; ++k)
+  {
+    if (max_[k] - min_[k] < kParted) return false;
+    beside = beside || std::min(from[k], to[k]) - max_[k] > kParted || min_[k] - std::max(from[k], to[k]) > kParted;
+  }
+  return beside;
+}
+
 bool Footprint::isCrossedBy(const PlanarPoint& a, const PlanarPoint& b) const
 {
+  if (isPoint() || isBeside(a, b)) return false;
   Polygon polygon;
   const int n = corners(polygon);
   for (int i = 0; i < n && n > 1; ++i)

@@ -3,6 +3,9 @@
 #include "geometry/z_curve.h"
 
 #include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <iterator>
 #include <numeric>
 #include <stdexcept>
 #include <utility>
@@ -12,6 +15,8 @@ namespace lidar_panoptic_clustering
 namespace
 {
 constexpr float kSideInDiagonals = 0.7071F;  // below sqrt(1/2): two points of a cell are closer than its diagonal
+constexpr float kRounding = 1.0001F;         // no block is to be passed over that holds a close point
+constexpr std::size_t kManyPoints = 2;       // a cell, in the mean: comparing cells takes its time
 constexpr std::size_t kFew = 48;             // points that are sorted faster by comparison
 
 /// std::floor is a call to the C library on processors without SSE 4.1.
@@ -33,6 +38,7 @@ void PlanarHierarchy::clear(float distance)
   cells_per_m_ = 1.0F / (kSideInDiagonals * distance);
   added_.clear();
   level_ = -1;
+  looked_at_ = 0;
 }
 
 void PlanarHierarchy::close()
@@ -92,7 +98,7 @@ void PlanarHierarchy::sortIntoCells()
   if (run_count <= kFew)
     std::sort(entries_.begin(), entries_.end());
   else
-    sortBySteps(bits);
+    entry_sort_.sort(entries_, bits, [](std::uint64_t entry) { return entry >> 32U; });
   constexpr std::size_t kAhead = 12;  // the points lie anywhere: their way into the cache begins that many runs before
   for (std::size_t k = 0; k < entries_.size(); ++k)
   {
@@ -105,24 +111,6 @@ void PlanarHierarchy::sortIntoCells()
       __builtin_prefetch(&cell_of_added_[begin], 1);
     }
     placeRun(static_cast<std::uint32_t>(entries_[k]));
-  }
-}
-
-/// Sorts entries_ by the `bits` from bit 32 on, a digit after the other; what is equal keeps its order.
-void PlanarHierarchy::sortBySteps(int bits)
-{
-  const int widest = std::clamp(widthOf(entries_.size()), 6, 11);
-  const int steps = (bits + widest - 1) / widest, digit = (bits + steps - 1) / steps;
-  const std::uint64_t mask = (std::uint64_t{1} << digit) - 1;
-  entries_aside_.resize(entries_.size());
-  for (int step = 0, shift = 32; step < steps; ++step, shift += digit)
-  {
-    counts_.assign(mask + 1, 0);
-    for (const std::uint64_t entry : entries_) ++counts_[entry >> shift & mask];
-    std::uint32_t begin = 0;
-    for (std::uint32_t& count : counts_) begin += std::exchange(count, begin);
-    for (const std::uint64_t entry : entries_) entries_aside_[counts_[entry >> shift & mask]++] = entry;
-    entries_.swap(entries_aside_);
   }
 }
 
@@ -200,8 +188,11 @@ void PlanarHierarchy::link(float distance)
     if (level > 0) uniteBlocks(level);
     sets_.flatten(component_);
     uniform_.assign(tiles_.size(), kNone);
-    linkTiles(level, 1, distance);  // first, so that most pairs farther apart are joined before their turn
-    sets_.flatten(component_);
+    if (kManyPoints * size() < added_.size())
+    {
+      linkTiles(level, 1, distance);  // first, so that most pairs farther apart are joined before their turn
+      sets_.flatten(component_);
+    }
   }
   else if (level > level_)
   {
@@ -252,6 +243,13 @@ bool PlanarHierarchy::isSettled(const Tile& tile) const
 void PlanarHierarchy::linkTiles(int level, int reach, float distance)
 {
   findUniform();
+  const float sides = kRounding * distance * cells_per_m_ / static_cast<float>(1 << level);
+  for (int rows = 0; rows <= reach; ++rows)
+  {
+    const float up = static_cast<float>(std::max(0, rows - 1));  // rows between the blocks
+    reach_of_row_[rows] = std::min(reach, 1 + static_cast<int>(std::sqrt(std::max(0.0F, sides * sides - up * up))));
+  }
+  in_window_ = nullptr;
   for (const Tile& tile : tiles_)
     if (!isSettled(tile)) linkTile(tile, level, reach, distance);
 }
@@ -268,50 +266,81 @@ void PlanarHierarchy::lookAt(const Tile& tile, int level, int row, int column)
     const std::uint64_t occupied = left >> (block * cells) & mask;
     left &= ~(mask << (block * cells));
     const CurvePlace at = kCurve.of[block];
-    Window& window = window_[row + at.y][column + at.x];
+    Window& window = windowAt(row + at.y, column + at.x);
     window.block.begin = cell;
     window.component = component_[cell];
+    const PlanarSample* const first = cells_.begin(cell);
+    window.x = first->x, window.y = first->y;
     cell += level == 0 ? 1U : kBitCounts.of[occupied & 255U] + kBitCounts.of[occupied >> 8U];
     window.block.end = cell;
+    window.is_one = first + 1 == cells_.end(cell - 1);
   }
+  for (int y = 0; y < kSide >> level; ++y) rows_[row + y] |= static_cast<std::uint32_t>(tile.rows[level][y]) << column;
+}
+
+/// Lays the window about a tile. Where it was about the one left of it, only the tiles on the right are new.
+void PlanarHierarchy::moveWindow(const Tile& tile, int level)
+{
+  const int side = kSide >> level;
+  const auto take = [&](std::uint32_t other, int row, int column)
+  {
+    if (other != kNone) lookAt(tiles_[other], level, row * side, column * side);
+  };
+  if (in_window_ != nullptr && in_window_ + 1 == &tile && in_window_->place + 1 == tile.place)
+  {
+    window_begin_ = (window_begin_ + static_cast<std::uint32_t>(side)) % kWindow;
+    for (std::uint32_t& row : rows_) row >>= side;
+    for (int y = 0; y < side; ++y) rows_[y] &= ~0U << side;  // what is on the left looks here
+  }
+  else
+  {
+    std::fill(std::begin(rows_), std::end(rows_), 0U);
+    lookAt(tile, level, 0, side);
+    take(tile.beside[1], 1, 0);
+    take(tile.beside[2], 1, 1);
+  }
+  take(tile.beside[0], 0, 2);
+  take(tile.beside[3], 1, 2);
+  in_window_ = &tile;
 }
 
 /// Joins each block of the tile with those after it in the tile, those of the tile right of it and those of the tiles
 /// above: half of all, the other half looks here.
 void PlanarHierarchy::linkTile(const Tile& tile, int level, int reach, float distance)
 {
+  moveWindow(tile, level);
   const int side = kSide >> level;
-  std::uint32_t rows[2 * kSide] = {};  // a bit an occupied block
-  const auto take = [&](const Tile& other, int row, int column)
-  {
-    lookAt(other, level, row * side, column * side);
-    for (int y = 0; y < side; ++y)
-      rows[row * side + y] |= static_cast<std::uint32_t>(other.rows[level][y]) << (column * side);
-  };
-  take(tile, 0, 1);
-  if (tile.beside[0] != kNone) take(tiles_[tile.beside[0]], 0, 2);
-  for (int k = 0; k < 3; ++k)
-    if (tile.beside[1 + k] != kNone) take(tiles_[tile.beside[1 + k]], 1, k);
-
-  const std::uint32_t window = (2U << (2 * reach)) - 1U;
   for (int y = 0; y < side; ++y)
     for (unsigned mine = tile.rows[level][y]; mine != 0; mine &= mine - 1U)
     {
       const int x = side + __builtin_ctz(mine);
-      const Window& from = window_[y][x];
+      const Window& from = windowAt(y, x);
       for (int row = std::max(0, y - reach); row <= y + reach; ++row)
       {
         // below: only the tile on the right; beside: only what is right of it
         const int first = row < y ? 2 * side : row == y ? x + 1 : 0;
-        std::uint32_t others = rows[row] & window << (x - reach) & ~0U << first;
-        for (; others != 0; others &= others - 1U)
-        {
-          const Window& to = window_[row][__builtin_ctz(others)];
-          if (from.component != to.component && sets_.find(from.block.begin) != sets_.find(to.block.begin) &&
-              cells_.areCloser(from.block, to.block, distance))
-            sets_.unite(from.block.begin, to.block.begin);
-        }
+        const int columns = reach_of_row_[std::abs(row - y)];
+        const std::uint32_t window = ((2U << (2 * columns)) - 1U) << (x - columns);
+        std::uint32_t others = rows_[row] & window & ~0U << first;
+        for (; others != 0; others &= others - 1U) linkBlocks(from, windowAt(row, __builtin_ctz(others)), distance);
       }
     }
+}
+
+/// Joins two blocks that hold points closer than `distance`.
+inline void PlanarHierarchy::linkBlocks(const Window& from, const Window& to, float distance)
+{
+  if (from.component == to.component) return;
+  const std::uint32_t a = from.block.begin, b = to.block.begin;
+  if (from.is_one && to.is_one)
+  {
+    looked_at_ += 2;
+    const float dx = from.x - to.x, dy = from.y - to.y;
+    if (dx * dx + dy * dy < distance * distance) sets_.unite(a, b);
+  }
+  else if (sets_.find(a) != sets_.find(b) && cells_.areCloser(from.block, to.block, distance))
+  {
+    sets_.unite(a, b);
+  }
 }
 }  // namespace lidar_panoptic_clustering

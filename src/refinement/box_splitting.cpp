@@ -1,6 +1,7 @@
 #include "lidar_panoptic_clustering/refinement/box_splitting.h"
 
 #include <algorithm>
+#include <cmath>
 #include <tuple>
 
 namespace lidar_panoptic_clustering
@@ -23,16 +24,23 @@ bool BoxSplitter::begin(const ThingScan& scan, const std::uint32_t* things, std:
   std::uint32_t largest = 0;
   for (std::uint32_t leaf = 0; leaf < tree_.size(); ++leaf) largest = std::max(largest, tree_.pointsOf(leaf));
   if (count - largest < fewestOf(count)) return false;
-  outline_.assign(tree_.size(), OrderedFootprint());
-  for (std::uint32_t k = 0; k < count; ++k)
-  {
-    const ThingPoint& p = scan.points[things[k]];
-    outline_[tree_.leafOf(k)].add(p.x, p.y, k);
-  }
+  scan_ = &scan, things_ = things, count_ = count;
+  outline_.clear();
   size_of_.assign(tree_.size(), 0);
   part_of_.resize(tree_.size());
   whole_.resize(tree_.size());
   return true;
+}
+
+void BoxSplitter::findOutlines()
+{
+  if (!outline_.empty()) return;
+  outline_.resize(tree_.size());
+  for (std::uint32_t k = 0; k < count_; ++k)
+  {
+    const ThingPoint& p = scan_->points[things_[k]];
+    outline_[tree_.leafOf(k)].add(p.x, p.y, k);
+  }
 }
 
 /// What hangs together at the finest distance does at the others too: a rest too small leaves nothing to part.
@@ -57,6 +65,7 @@ std::uint32_t BoxSplitter::split(const std::uint32_t* leaves, std::uint32_t coun
   {
     const std::uint32_t parts = countSizeable(leaves, count, tenths, fewestOf(points));
     if (parts < 2) continue;
+    findOutlines();
     joinRest(leaves, count, tenths);
     const auto& component = tree_.components(tenths);
     part.resize(count);
@@ -100,8 +109,10 @@ void BoxSplitter::joinRest(const std::uint32_t* leaves, std::uint32_t count, int
       part_of_[leaves[k]] = nearestPart(whole_[leaves[k]].outline());
 }
 
+/// By gap, then by where the part begins.
 std::uint32_t BoxSplitter::nearestPart(const Footprint& outline) const
 {
+  constexpr float kRounding = 1e-3F;  // of the gap, and [m]
   const auto gap = [&](std::uint32_t k)
   {
     const Footprint& other = whole_[sizeable_[k]].outline();
@@ -110,7 +121,11 @@ std::uint32_t BoxSplitter::nearestPart(const Footprint& outline) const
   std::uint32_t nearest = 0;
   auto least = gap(0);
   for (std::uint32_t k = 1; k < sizeable_.size(); ++k)
+  {
+    const float distance = std::sqrt(std::get<0>(least));
+    if (!outline.mayBeCloser(whole_[sizeable_[k]].outline(), distance + kRounding * (distance + 1.0F))) continue;
     if (const auto found = gap(k); found < least) nearest = k, least = found;
+  }
   return nearest;
 }
 }  // namespace lidar_panoptic_clustering

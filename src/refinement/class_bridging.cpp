@@ -11,8 +11,11 @@ namespace
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr float kRounding = 1.001F;     // outlines are never to exclude what points would join
 constexpr std::size_t kMostPairs = 32;  // an object, in the mean; in a denser heap all points are looked at
+constexpr std::size_t kFewPoints = 2;   // an object, in the mean: outlines would save nothing
 constexpr std::size_t kAhead = 16;      // objects that are fetched before they are looked at
 }  // namespace
+
+const ClassBridging::Reach ClassBridging::kEverywhere = {-kFar, kFar, -kFar, kFar};
 
 void ClassBridging::Reach::add(const Footprint& other, float distance)
 {
@@ -25,7 +28,7 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
                          std::vector<std::uint32_t>& whole_of)
 {
   sets_.reset(objects.size());
-  if (distance > 0.0F && findReaches(objects, table, kRounding * distance))
+  if (distance > 0.0F && (lookAtAll(scan, objects) || findReaches(objects, table, kRounding * distance)))
   {
     sortByGroup(scan, table, objects, object_of_thing);
     for (const auto& things : things_of_group_)
@@ -34,13 +37,22 @@ void ClassBridging::join(const ThingScan& scan, const ClassTable& table, float d
   sets_.flatten(whole_of);
 }
 
+/// Where objects have hardly more than a point: whether all points are to be looked at.
+bool ClassBridging::lookAtAll(const ThingScan& scan, const std::vector<RefinedObject>& objects)
+{
+  if (objects.size() < 2 || kFewPoints * objects.size() < scan.size()) return false;
+  reach_.assign(objects.size(), kEverywhere);
+  return true;
+}
+
 /// Sweeps over the objects along x. Returns whether any two of a group may be near.
 bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance)
 {
   reach_.assign(objects.size(), {kFar, -kFar, kFar, -kFar});
   by_min_x_.clear();
   for (std::uint32_t k = 0; k < objects.size(); ++k) by_min_x_.push_back({objects[k].footprint.minX(), k});
-  std::sort(by_min_x_.begin(), by_min_x_.end(), [](const Start& a, const Start& b) { return a.min_x < b.min_x; });
+  start_sort_.sort(
+      by_min_x_, [](const Start& start) { return start.min_x; }, [](const Start&, const Start&) { return false; });
   extents_.clear();
   for (std::size_t i = 0; i < by_min_x_.size(); ++i)
   {
@@ -60,7 +72,7 @@ bool ClassBridging::findReaches(const std::vector<RefinedObject>& objects, const
       if (by_min_x_[j].min_x - mine.max_x >= distance) break;
       if (pairs_left-- == 0)
       {
-        reach_.assign(objects.size(), {-kFar, kFar, -kFar, kFar});
+        reach_.assign(objects.size(), kEverywhere);
         return true;
       }
       if (!mine.mayBeCloser(extents_[j], distance)) continue;
@@ -79,13 +91,14 @@ void ClassBridging::sortByGroup(const ThingScan& scan, const ClassTable& table,
                                 const std::vector<RefinedObject>& objects,
                                 const std::vector<std::uint32_t>& object_of_thing)
 {
+  group_of_.clear();
+  for (const RefinedObject& object : objects) group_of_.push_back(table[object.class_index].group);
   things_of_group_.resize(table.groupCount());
   for (auto& things : things_of_group_) things.clear();
   for (std::uint32_t i = 0; i < scan.size(); ++i)
   {
     const std::uint32_t object = object_of_thing[i];
-    if (reach_[object].contains(scan.points[i].x, scan.points[i].y))
-      things_of_group_[table[objects[object].class_index].group].push_back(i);
+    if (reach_[object].contains(scan.points[i].x, scan.points[i].y)) things_of_group_[group_of_[object]].push_back(i);
   }
 }
 
@@ -93,16 +106,15 @@ void ClassBridging::uniteClose(const ThingScan& scan, const std::vector<std::uin
                                const std::vector<std::uint32_t>& object_of_thing)
 {
   cells_.clear(distance);
-  for (const std::uint32_t i : things) cells_.add(scan.points[i].x, scan.points[i].y, i);
+  for (const std::uint32_t i : things) cells_.add(scan.points[i].x, scan.points[i].y, object_of_thing[i]);
   cells_.close();
   cells_.link(distance);
   for (std::uint32_t cell = 0; cell < cells_.size(); ++cell)
   {
-    std::uint32_t last = object_of_thing[cells_.firstThing(cells_.components()[cell])];
+    std::uint32_t last = cells_.firstThing(cells_.components()[cell]);
     cells_.forEach(cell,
-                   [&](std::uint32_t thing)
+                   [&](std::uint32_t object)
                    {
-                     const std::uint32_t object = object_of_thing[thing];
                      if (object != last) sets_.unite(object, last);
                      last = object;
                    });

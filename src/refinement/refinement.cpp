@@ -106,9 +106,12 @@ void Refinement::elect(std::uint32_t object)
 void Refinement::bridge(const ThingScan& scan)
 {
   bridging_.join(scan, *table_, static_cast<float>(config_.bridge_distance_m), objects_, object_of_thing_, whole_of_);
+  constexpr std::uint32_t kAhead = 16;  // wholes lie anywhere: their way into the cache begins that many objects before
   std::uint32_t wholes = 0;
   for (std::uint32_t k = 0; k < whole_of_.size(); ++k)
   {
+    if (k + kAhead < whole_of_.size() && whole_of_[k + kAhead] < k)
+      __builtin_prefetch(&objects_[whole_of_[whole_of_[k + kAhead]]], 1);
     const std::uint32_t whole = whole_of_[k];  // the first of its objects: never above k, and renumbered before
     whole_of_[k] = whole == k ? wholes++ : whole_of_[whole];
     moveInto(k, whole_of_[k], whole == k);

@@ -21,7 +21,7 @@ VoxelKey cellOf(const Instances::Object& object, float side)
 
 void InstanceColors::collectPairs(const Instances& instances)
 {
-  grid_.reset(previous_.size());
+  grid_.reset();
   first_.clear();
   next_in_cell_.resize(previous_.size());
   pairs_.clear();
@@ -44,11 +44,9 @@ void InstanceColors::collectPairs(const Instances& instances)
         if (cell != VoxelIndex::kNone) comparePrevious(c, object, first_[cell]);
       }
   }
-  std::sort(pairs_.begin(), pairs_.end(),
-            [](const Pair& a, const Pair& b) {
-              return std::tie(a.squared_distance, a.current, a.previous) <
-                     std::tie(b.squared_distance, b.current, b.previous);
-            });
+  pair_sort_.sort(
+      pairs_, [](const Pair& pair) { return pair.squared_distance; },
+      [](const Pair& a, const Pair& b) { return std::tie(a.current, a.previous) < std::tie(b.current, b.previous); });
 }
 
 /// Notes the objects of a cell's list that lie within the gate. A cell of 2 m that holds more than kMost objects of one

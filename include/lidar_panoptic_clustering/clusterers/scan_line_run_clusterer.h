@@ -105,6 +105,7 @@ private:
   bool linkRuns(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
   bool anyPairClose(const Run& upper, const Run& lower, int shift);
   void linkPoints(std::uint32_t upper_slot, std::uint32_t lower_slot, int turn);
+  float layersPerMetre(std::uint32_t slot) const;
   void sortByRange(std::uint32_t slot);
   void linkPoint(const Point& p, int shift);
   void linkLayer(const Point& p, int shift, Layer& layer, std::uint32_t& object);
@@ -115,6 +116,7 @@ private:
 
   ScanLineRunConfig config_;
   float run_distance_, line_distance_;
+  std::uint32_t columns_ = 0;  ///< of the scan
 
   // A slot is a scan line and a link key: row * link_count + link.
   std::vector<Point> points_;              ///< by slot, then column
@@ -134,6 +136,7 @@ private:
     std::vector<int> column;
     std::vector<std::uint32_t> point;  ///< of points_
     std::vector<Layer> layers;         ///< by range
+    float layers_per_m = 0.0F;         ///< 0: one layer
     std::uint32_t slot = 0xFFFFFFFF;   ///< whose points these are
   };
   Columns lower_;

@@ -38,6 +38,7 @@ public:
   /// Widens the outline to hold another one.
   void add(const Footprint& other)
   {
+    if (!isOutside(other.max_) && !isOutside(other.min_)) return;
     for (const PlanarPoint& p : other.point_) add(p.x, p.y);
   }
 
@@ -68,6 +69,8 @@ public:
 
   /// Whether a rectangle about the outline is at most `length` x `width` [m].
   bool fits(float length, float width) const;
+  /// The same about this outline and another one together.
+  bool fitsWith(const Footprint& other, float length, float width) const;
 
   /// Nearest points of two outlines (convex polygons); where they overlap, the two are the same.
   struct Gap
@@ -89,6 +92,9 @@ public:
 private:
   friend class OrderedFootprint;
   static constexpr float kFar = std::numeric_limits<float>::infinity();
+
+  bool isPoint() const { return min_[0] == max_[0] && min_[1] == max_[1]; }
+  bool isBeside(const PlanarPoint& a, const PlanarPoint& b) const;
 
   bool isOutside(const float (&along)[kAxes]) const
   {

@@ -2,6 +2,7 @@
 
 #include "lidar_panoptic_clustering/geometry/cell_contents.h"
 #include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
+#include "lidar_panoptic_clustering/geometry/step_sort.h"
 
 #include <array>
 #include <cstdint>
@@ -50,11 +51,12 @@ public:
   std::uint32_t firstThing(std::uint32_t cell) const { return cells_.begin(cell)->thing; }
 
   /// Points looked at by comparisons since clear(), for tests that bound the work.
-  std::size_t pointsLookedAt() const { return cells_.pointsLookedAt(); }
+  std::size_t pointsLookedAt() const { return cells_.pointsLookedAt() + looked_at_; }
 
 private:
-  static constexpr int kLevels = 3;  // blocks of 1, 2 and 4 cells a side
-  static constexpr int kSide = 8;    // cells a side of a tile
+  static constexpr int kLevels = 3;             // blocks of 1, 2 and 4 cells a side
+  static constexpr int kSide = 8;               // cells a side of a tile
+  static constexpr std::uint32_t kWindow = 32;  // columns of the window, of which three tiles' are in use
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   struct Tile
@@ -74,12 +76,13 @@ private:
   /// A block near the tile in hand.
   struct Window
   {
+    float x, y;  ///< its first point
     CellContents::Block block;
     std::uint32_t component;
+    bool is_one;  ///< it holds no other point
   };
 
   void sortIntoCells();
-  void sortBySteps(int bits);
   void placeRun(std::uint32_t run);
   void closeTiles();
   void findNeighbours();
@@ -88,13 +91,20 @@ private:
   bool isSettled(const Tile& tile) const;
   void linkTiles(int level, int reach, float distance);
   void linkTile(const Tile& tile, int level, int reach, float distance);
+  void linkBlocks(const Window& from, const Window& to, float distance);
+  void moveWindow(const Tile& tile, int level);
   void lookAt(const Tile& tile, int level, int row, int column);
+  Window& windowAt(int row, int column)
+  {
+    return window_[row][(static_cast<std::uint32_t>(column) + window_begin_) % kWindow];
+  }
 
   float distance_ = 0.0F, cells_per_m_ = 0.0F;
   std::vector<PlanarSample> added_;
   std::vector<Run> runs_;
-  std::vector<std::uint64_t> entries_, entries_aside_;  ///< a run's key above, its number below
-  std::vector<std::uint32_t> counts_, order_;
+  std::vector<std::uint64_t> entries_;  ///< a run's key above, its number below
+  StepSort<std::uint64_t> entry_sort_;
+  std::vector<std::uint32_t> order_;
   std::vector<std::uint32_t> cell_of_added_;
   std::uint64_t stride_ = 1;  ///< tiles a row
   std::uint64_t last_key_ = 0;
@@ -103,8 +113,13 @@ private:
 
   CellContents cells_;
   std::vector<Tile> tiles_;
-  std::vector<std::uint32_t> uniform_;   ///< by tile: the component of all its cells, kNone where there are several
-  Window window_[2 * kSide][3 * kSide];  ///< the tile in hand in the middle below, and those beside and above
+  std::vector<std::uint32_t> uniform_;  ///< by tile: the component of all its cells, kNone where there are several
+  Window window_[2 * kSide][kWindow];   ///< the tile in hand in the middle below, and those beside and above
+  std::uint32_t rows_[2 * kSide] = {};  ///< of the window: a bit an occupied block
+  std::uint32_t window_begin_ = 0;      ///< its first column in window_, which it moves around in
+  const Tile* in_window_ = nullptr;     ///< the tile in the middle below
+  int reach_of_row_[4] = {};            ///< blocks either side that may hold close points, by rows up or down
+  std::size_t looked_at_ = 0;           ///< points of blocks that hold one
   DisjointSets sets_;
   std::vector<std::uint32_t> component_;
   int level_ = -1;  ///< of the blocks whose cells are joined; -1 before the first link()

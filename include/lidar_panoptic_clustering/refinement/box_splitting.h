@@ -24,12 +24,12 @@ public:
   static constexpr int kCoarsest = LinkageTree::kCoarsest;  ///< tenths of the reach to begin with
 
   /// `things`: the object's `count` points, indices into the scan, in rising order. Returns whether it can be parted at
-  /// all; if not, nothing else may be called.
+  /// all; if not, nothing else may be called. The things stay where they are until the next call.
   bool begin(const ThingScan& scan, const std::uint32_t* things, std::uint32_t count, float reach);
 
   /// The object's leaves; a set of them is always given in rising order.
   const LinkageTree& leaves() const { return tree_; }
-  /// A leaf's outline.
+  /// A leaf's outline; once the object was parted.
   const OrderedFootprint& outline(std::uint32_t leaf) const { return outline_[leaf]; }
 
   /// Parts what `count` leaves make together. `tenths`: where to begin, at most kCoarsest; becomes the distance found,
@@ -43,11 +43,15 @@ private:
 
   bool isOneAtTheFinest(const std::uint32_t* leaves, std::uint32_t count, std::uint32_t& points) const;
   std::uint32_t countSizeable(const std::uint32_t* leaves, std::uint32_t count, int tenths, std::uint32_t fewest);
+  void findOutlines();
   void joinRest(const std::uint32_t* leaves, std::uint32_t count, int tenths);
   std::uint32_t nearestPart(const Footprint& outline) const;
 
   LinkageTree tree_;
-  std::vector<OrderedFootprint> outline_;         ///< by leaf
+  const ThingScan* scan_ = nullptr;  ///< what begin() was given
+  const std::uint32_t* things_ = nullptr;
+  std::uint32_t count_ = 0;
+  std::vector<OrderedFootprint> outline_;         ///< by leaf; empty until the object is parted
   std::vector<std::uint32_t> size_of_, part_of_;  ///< by component's first leaf
   std::vector<OrderedFootprint> whole_;           ///< by component's first leaf: its outline
   std::vector<std::uint32_t> sizeable_;           ///< by part: its component

@@ -4,6 +4,7 @@
 #include "lidar_panoptic_clustering/core/thing_scan.h"
 #include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
 #include "lidar_panoptic_clustering/geometry/planar_hierarchy.h"
+#include "lidar_panoptic_clustering/geometry/step_sort.h"
 #include "lidar_panoptic_clustering/refinement/part_merging.h"
 
 #include <cstdint>
@@ -34,6 +35,8 @@ private:
     bool contains(float x, float y) const { return x >= min_x && x <= max_x && y >= min_y && y <= max_y; }
   };
 
+  static const Reach kEverywhere;
+
   struct Start
   {
     float min_x;
@@ -50,15 +53,18 @@ private:
     }
   };
 
+  bool lookAtAll(const ThingScan& scan, const std::vector<RefinedObject>& objects);
   bool findReaches(const std::vector<RefinedObject>& objects, const ClassTable& table, float distance);
   void sortByGroup(const ThingScan& scan, const ClassTable& table, const std::vector<RefinedObject>& objects,
                    const std::vector<std::uint32_t>& object_of_thing);
   void uniteClose(const ThingScan& scan, const std::vector<std::uint32_t>& things, float distance,
                   const std::vector<std::uint32_t>& object_of_thing);
 
-  std::vector<Start> by_min_x_;                              ///< objects
+  std::vector<Start> by_min_x_;  ///< objects
+  FloatSort<Start> start_sort_;
   std::vector<Extent> extents_;                              ///< parallel to by_min_x_
   std::vector<Reach> reach_;                                 ///< by object
+  std::vector<std::uint32_t> group_of_;                      ///< by object
   std::vector<std::vector<std::uint32_t>> things_of_group_;  ///< within reach of another object
   PlanarHierarchy cells_;                                    ///< of a group's
   DisjointSets sets_;

@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/class_table.h"
 #include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
 #include "lidar_panoptic_clustering/geometry/footprint.h"
+#include "lidar_panoptic_clustering/geometry/step_sort.h"
 #include "lidar_panoptic_clustering/geometry/voxel_index.h"
 
 #include <cstdint>
@@ -58,28 +59,29 @@ private:
     float min_x, min_y;
     std::uint32_t object;
   };
-  struct Entry
-  {
-    std::uint32_t object, next;
-  };
   static constexpr std::uint32_t kNone = 0xFFFFFFFF;
 
   void sortObjects(const std::vector<RefinedObject>& objects);
-  void fillGrid(const std::vector<RefinedObject>& objects);
-  void collectPairs(const std::vector<RefinedObject>& objects, const ClassTable& table);
-  bool isParted(const std::vector<RefinedObject>& objects, std::uint32_t a, std::uint32_t b,
-                const Footprint::Gap& gap) const;
+  void fillGrid();
+  void collectPairs(const ClassTable& table);
+  void compareWithEarlier(std::uint32_t a, const ClassInfo& info);
+  bool isParted(std::uint32_t a, std::uint32_t b, const Footprint::Gap& gap) const;
   template <class Visit>
   void visitCells(float min_x, float max_x, float min_y, float max_y, const Visit& visit) const;
 
-  VoxelIndex grid_;
-  std::vector<std::uint32_t> first_;  ///< by occupied cell: its last entry
-  std::vector<Entry> entries_;
-  std::vector<std::uint32_t> seen_;  ///< by object: the last one it was compared with
-  std::vector<Pair> pairs_;
   std::vector<Start> by_min_x_;
-  std::vector<std::uint32_t> order_;
-  std::vector<RefinedObject> sorted_;  ///< by place; a whole's first has its outline
+  FloatSort<Start> start_sort_;
+  std::vector<std::uint32_t> order_;  ///< objects by place: by where they begin along x
+  std::vector<Footprint> outlines_;   ///< by place; a whole's first has its outline
+  std::vector<ClassIndex> class_of_;  ///< by place
+
+  VoxelIndex grid_;
+  std::vector<std::uint32_t> cell_of_entry_, first_entry_;  ///< cells by object, and where an object's begin
+  std::vector<std::uint32_t> begin_, filled_;  ///< by cell, into entries_: its first, the next to be filled
+  std::vector<std::uint32_t> entries_;         ///< objects, cell by cell, in rising order
+  std::vector<std::uint32_t> seen_;            ///< by object: the last one it was compared with
+  std::vector<Pair> pairs_;
+  FloatSort<Pair> pair_sort_;
   DisjointSets sets_;
 };
 }  // namespace lidar_panoptic_clustering

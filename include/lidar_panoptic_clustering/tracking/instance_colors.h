@@ -1,6 +1,7 @@
 #pragma once
 
 #include "lidar_panoptic_clustering/core/instances.h"
+#include "lidar_panoptic_clustering/geometry/step_sort.h"
 #include "lidar_panoptic_clustering/geometry/voxel_index.h"
 
 #include <cstdint>
@@ -41,6 +42,7 @@ private:
   std::vector<std::uint32_t> first_;  ///< by occupied cell: its last object of the scan before
   std::vector<std::uint32_t> next_in_cell_;
   std::vector<Pair> pairs_;
+  FloatSort<Pair> pair_sort_;
   std::vector<bool> previous_taken_;
   std::uint32_t next_ = 0;
 };

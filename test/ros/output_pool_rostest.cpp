@@ -1,0 +1,141 @@
+// What a nodelet allocates for a scan in a living graph, once it has seen scans of the kind.
+#include "graph_fixture.h"
+#include "labelled_scene.h"
+
+#include <pcl_ros/point_cloud.h>
+
+#include <atomic>
+#include <cstddef>
+#include <deque>
+#include <iostream>
+
+#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
+#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 0
+#else
+#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 1
+#endif
+
+namespace
+{
+constexpr std::size_t kLarge = 65536;  // bytes; ROS's own messages and queues are far smaller
+std::atomic<std::size_t> all_blocks{0}, large_blocks{0};
+
+[[maybe_unused]] void count(std::size_t size)
+{
+  ++all_blocks;
+  if (size >= kLarge) ++large_blocks;
+}
+}  // namespace
+
+#if LIDAR_PANOPTIC_COUNTS_ALLOCATIONS
+// Every way to memory from here and from the libraries: operator new and Eigen's allocator end in these.
+extern "C"
+{
+  void* __libc_malloc(std::size_t size);
+  void* __libc_calloc(std::size_t count, std::size_t size);
+  void* __libc_realloc(void* block, std::size_t size);
+  void* __libc_memalign(std::size_t alignment, std::size_t size);
+
+  void* malloc(std::size_t size)
+  {
+    count(size);
+    return __libc_malloc(size);
+  }
+  void* calloc(std::size_t number, std::size_t size)
+  {
+    count(number * size);
+    return __libc_calloc(number, size);
+  }
+  void* realloc(void* block, std::size_t size)
+  {
+    count(size);
+    return __libc_realloc(block, size);
+  }
+  void* aligned_alloc(std::size_t alignment, std::size_t size)
+  {
+    count(size);
+    return __libc_memalign(alignment, size);
+  }
+}
+#endif
+
+namespace lidar_panoptic_clustering
+{
+namespace
+{
+constexpr std::uint32_t kRows = 64, kColumns = 2048;
+
+boost::shared_ptr<const LabelledCloud> fullScan()
+{
+  LabelledCloud cloud = randomScan(3, kRows, kColumns);
+  cloud.header.frame_id = "lidar";
+  cloud.header.stamp = 1700000000123456;
+  return share(cloud);
+}
+
+class OutputPool : public Graph, public testing::WithParamInterface<std::string>
+{
+protected:
+  /// Sends a scan `count` times, each when the one before has come out; the last `held` outputs are kept. Returns
+  /// whether all came out.
+  bool send(int count, std::size_t held)
+  {
+    for (int k = 0; k < count; ++k)
+    {
+      input_.publish(scan_);
+      kept_.push_back(output_->next());
+      if (!kept_.back()) return false;
+      while (kept_.size() > held) kept_.pop_front();
+    }
+    return true;
+  }
+
+  /// Prints what a scan takes.
+  void expectNoLargeBlock(std::size_t held)
+  {
+    ASSERT_TRUE(send(8, held));
+    constexpr int kScans = 20;
+    const std::size_t all = all_blocks, large = large_blocks;
+    ASSERT_TRUE(send(kScans, held));
+    EXPECT_EQ(large_blocks - large, 0U) << "with " << held << " outputs held by a reader";
+    std::cout << GetParam() << ", " << held << " outputs held: " << (large_blocks - large) / double{kScans}
+              << " blocks of 64 KB and more a scan, " << (all_blocks - all) / double{kScans} << " of any size\n";
+  }
+
+  void SetUp() override
+  {
+    if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
+    const std::size_t before = large_blocks;
+    const std::vector<char> counted(kLarge);
+    ASSERT_EQ(large_blocks, before + 1) << "the counter does not count " << counted.size();
+    const std::string name = load(clusterNodelet(GetParam()));
+    input_ = advertise<LabelledCloud>(name + "/input");
+    output_ = std::make_unique<Probe<PanopticCloud>>(name + "/output");
+    waitForSubscriber(input_);
+  }
+
+  boost::shared_ptr<const LabelledCloud> scan_ = fullScan();
+  ros::Publisher input_;
+  std::unique_ptr<Probe<PanopticCloud>> output_;
+  std::deque<Probe<PanopticCloud>::Ptr> kept_;
+};
+INSTANTIATE_TEST_SUITE_P(Algorithms, OutputPool, testing::Values("depth", "scan_line_run", "birds_eye"),
+                         [](const auto& instance) { return instance.param; });
+
+/// Each output lies in a cloud that came back: 4 MB a scan otherwise.
+TEST_P(OutputPool, AllocatesNoCloudInSteadyState)
+{
+  expectNoLargeBlock(0);
+}
+
+TEST_P(OutputPool, AllocatesNoCloudWhileAReaderHoldsThree)
+{
+  expectNoLargeBlock(3);
+}
+}  // namespace
+}  // namespace lidar_panoptic_clustering
+
+int main(int argc, char** argv)
+{
+  return lidar_panoptic_clustering::runGraphTests(argc, argv, "output_pool_test");
+}
