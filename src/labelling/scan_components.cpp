@@ -134,17 +134,18 @@ void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std
   const std::uint32_t part = part_of_[pixel], size = rows_ * columns_;
   const std::uint32_t step = highest_first ? columns_ : 0U - columns_;
   const auto isInside = [size](std::uint32_t at) { return at < size; };  // above row 0 it wraps to beyond the last
-  bool is_first = true;
-  for (std::uint32_t over = pixel;;)
+  bool is_first = true, is_through = false;
+  for (std::uint32_t over = pixel, under = pixel, rows = 0;;)
   {
-    std::uint32_t under = over + step, rows = 1;
-    for (; isInside(under) && !returns[under].isReturn(); ++rows) under += step;
+    do under += step, ++rows;
+    while (isInside(under) && !returns[under].isReturn());
     if (!isInside(under) || part_of_[under] == part) return;
     const float beyond = returns[under].range - returns[over].range;
     ScanComponent& c = parts_[part];
     if (const std::uint32_t other = part_of_[under]; other != kNone)
     {
-      c.hidden += component_of_part_[part] != component_of_part_[other] && beyond < -kUnder ? 1U : 0U;
+      const bool is_before = component_of_part_[part] != component_of_part_[other] && beyond < -kUnder;
+      c.hidden += !is_through && is_before ? 1U : 0U;
       return;
     }
     if (rows > kRowReach) return;
@@ -154,10 +155,12 @@ void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std
       c.undercut += beyond > kUnder ? 1U : 0U;
       c.blocked += is_foot ? 1U : 0U;
     }
+    is_first = false, is_through |= beyond > kUnder;
+    if (beyond > kUnder) continue;
     if (!is_foot) return;
     part_of_[under] = part;
     feet_.push_back(under);
-    over = under, is_first = false;
+    over = under, rows = 0;
   }
 }
 

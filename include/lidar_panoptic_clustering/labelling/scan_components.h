@@ -76,7 +76,9 @@ public:
 
   /// The pixels of the returns above the ground, in row-major order.
   const std::vector<std::uint32_t>& pixels() const { return pixels_; }
-  /// The pixels of returns on the ground that are the feet of what stands there.
+  /// The pixels of returns below where parts begin that are the feet of what stands there: below a part and as far
+  /// away, one after the other, or beneath a gap of up to 4 rows through which beams went on, as between a fence's
+  /// rails and the low wall that these stand on.
   const std::vector<std::uint32_t>& feet() const { return feet_; }
   /// The part of a pixel, kNone for those without.
   std::uint32_t partOf(std::size_t pixel) const { return part_of_[pixel]; }
