@@ -44,7 +44,8 @@ void GroundLabeler::label(LabelledCloud& cloud)
     throw std::invalid_argument("expected width x height points, found a cloud of " + std::to_string(cloud.width) +
                                 " x " + std::to_string(cloud.height) + " with " + std::to_string(cloud.points.size()));
   const auto max_range = static_cast<float>(config_.max_range_m);
-  found_ground_ = surface_.find(cloud, max_range, static_cast<float>(config_.max_slope), returns_);
+  found_ground_ = surface_.find(cloud, max_range, static_cast<float>(config_.max_slope));
+  returns_.resize(cloud.points.size());
   const float above = found_ground_ ? static_cast<float>(config_.ground_height_m)  //
                                     : -std::numeric_limits<float>::infinity();
   const bool closed = closesOnItself(config_.field_of_view, measureColumnAngle(cloud, max_range), cloud.width);
@@ -53,7 +54,7 @@ void GroundLabeler::label(LabelledCloud& cloud)
   for (std::uint32_t row = 0; row < cloud.height; ++row)
   {
     const std::size_t begin = std::size_t{row} * cloud.width, end = begin + cloud.width;
-    surface_.writeHeights(cloud, begin, end, returns_);
+    surface_.locate(cloud, begin, end, returns_);
     components_.addRow(row, cloud, returns_);
     showGround(cloud, begin, end);
   }

@@ -1,36 +1,69 @@
 #include "lidar_panoptic_clustering/labelling/ground_plane.h"
 
+#include "four_floats.h"
+
 #include <Eigen/Dense>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
+#include <limits>
 
 namespace lidar_panoptic_clustering
 {
 namespace
 {
+constexpr std::size_t kOffsets = 48;  // down to 12 m below the sensor
+constexpr float kOffsetStep = 0.25F;
+using Votes = std::array<int, kOffsets + 2>;  ///< by offset; then those for none, after one that has none
+
+/// Votes of a few hundred returns, four at once.
+class Voters
+{
+public:
+  explicit Voters(const std::vector<LowReturn>& lowest)
+  {
+    constexpr std::size_t kVoters = 300;
+    const std::size_t stride = 1 + lowest.size() / kVoters;
+    constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
+    for (std::size_t i = 0; i < lowest.size(); i += stride, ++size_)
+      x_[size_] = lowest[i].x, y_[size_] = lowest[i].y, z_[size_] = lowest[i].z;
+    for (; size_ % 4 != 0; ++size_) x_[size_] = y_[size_] = z_[size_] = kNaN;
+  }
+
+  Votes forSlopes(const SlopedPlane& plane) const
+  {
+    Votes votes{};
+    for (std::size_t i = 0; i < size_; i += 4)
+    {
+      const FourFloats height = loadFour(&z_[i]) - plane.slope_x * loadFour(&x_[i]) - plane.slope_y * loadFour(&y_[i]);
+      const FourFloats below = -height / kOffsetStep;
+      const FourInts is_in = (below > 0.0F) & (below < float{kOffsets});
+      const FourInts offset = select(is_in, truncated(below), FourInts{} + static_cast<std::int32_t>(kOffsets + 1));
+      for (int k = 0; k < 4; ++k) ++votes[static_cast<std::size_t>(offset[k])];
+    }
+    return votes;
+  }
+
+private:
+  std::array<float, 304> x_, y_, z_;  ///< the stride leaves 300 at most
+  std::size_t size_ = 0;
+};
+
 /// The slopes and offset that most of the returns agree on, coarsely.
 SlopedPlane votePlane(const std::vector<LowReturn>& lowest)
 {
   constexpr int kSlopes = 6;  // either side, two degrees each
-  constexpr float kSlopeStep = 0.035F, kOffsetStep = 0.25F;
-  constexpr std::size_t kOffsets = 48;  // down to 12 m below the sensor
-  constexpr std::size_t kVoters = 300;
-  const std::size_t stride = 1 + lowest.size() / kVoters;
+  constexpr float kSlopeStep = 0.035F;
+  const Voters voters(lowest);
   SlopedPlane elected;
   int most = -1;
   for (int v = -kSlopes; v <= kSlopes; ++v)
     for (int u = -kSlopes; u <= kSlopes; ++u)
     {
       const SlopedPlane plane{kSlopeStep * static_cast<float>(u), kSlopeStep * static_cast<float>(v), 0.0F};
-      std::array<int, kOffsets + 1> votes{};
-      for (std::size_t i = 0; i < lowest.size(); i += stride)
-      {
-        const float below = -plane.heightOf(lowest[i].x, lowest[i].y, lowest[i].z) / kOffsetStep;
-        if (below > 0.0F && below < kOffsets) ++votes[static_cast<std::size_t>(below)];
-      }
+      const Votes votes = voters.forSlopes(plane);
       for (std::size_t k = 0; k < kOffsets; ++k)
         if (votes[k] + votes[k + 1] > most)
         {

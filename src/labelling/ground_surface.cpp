@@ -14,46 +14,76 @@ namespace
 constexpr float kNaN = std::numeric_limits<float>::quiet_NaN();
 constexpr float kFar = std::numeric_limits<float>::infinity();
 constexpr std::uint32_t kBins = PolarGrid::kBins, kCells = PolarGrid::kCells;
-constexpr std::uint32_t kNoCell = kCells;  // where what is no return goes, so that nothing has to be asked a point
+constexpr std::uint16_t kNoCell = kCells;  // where what is no return goes, so that nothing has to be asked a point
+
+constexpr std::size_t kBlock = 256;  // points, a multiple of four, that stay in the nearest cache
 
 const PolarGrid kGrid;
+constexpr std::int64_t kNothing = std::numeric_limits<std::int64_t>::max();
 
-/// Coordinates of four points.
-struct FourPoints
+/// Ranges of four points, NaN for those that are no returns.
+inline FourFloats rangesOf(const FourPoints& p, const FourInts& is_return)
 {
-  explicit FourPoints(const LabelledPoint* p)
-      : x{p[0].x, p[1].x, p[2].x, p[3].x}, y{p[0].y, p[1].y, p[2].y, p[3].y}, z{p[0].z, p[1].z, p[2].z, p[3].z}
-  {
-  }
-
-  FourFloats x, y, z;
-};
-
-/// Ranges and cells of four points.
-inline void locate(const LabelledPoint* points, float max_squared_range, GroundedReturn* returns, std::uint16_t* cells)
-{
-  const FourPoints p(points);
-  const FourFloats squared = p.x * p.x + p.y * p.y, whole = squared + p.z * p.z;
-  const FourInts is_return = (squared > 0.0F) & (whole <= max_squared_range);  // not NaN and infinity
-  const FourFloats range = select(is_return, squareRoot(squared), broadcast(kNaN));
-  kGrid.cellsOf(p.x, p.y, range, is_return, cells);
-  for (int k = 0; k < 4; ++k) returns[k] = {range[k], kNaN};
+  return select(is_return, squareRoot(p.x * p.x + p.y * p.y), broadcast(kNaN));
 }
+
+inline FourInts areReturns(const FourPoints& p, float max_squared_range)
+{
+  const FourFloats squared = p.x * p.x + p.y * p.y;
+  return (squared > 0.0F) & (squared + p.z * p.z <= max_squared_range);  // not NaN and infinity
+}
+
+/// Cells of points, a multiple of four.
+void findCells(const LabelledPoint* points, std::size_t size, float max_range_m, std::uint16_t* cells)
+{
+  const float max_squared_range = max_range_m * max_range_m;
+  for (std::size_t i = 0; i < size; i += 4)
+  {
+    const FourPoints p(points + i);
+    const FourInts is_return = areReturns(p, max_squared_range);
+    writeShorts(PolarGrid::cellsOf(p.x, p.y, squareRoot(p.x * p.x + p.y * p.y), is_return), cells + i);
+  }
+}
+
+/// A number in whose order heights lie, and of the same height the places.
+inline std::int64_t placeByHeight(float height, std::size_t place)
+{
+  std::int32_t bits;
+  std::memcpy(&bits, &height, sizeof(bits));
+  const std::int32_t ordered = bits ^ ((bits >> 31) & 0x7FFFFFFF);
+  return std::int64_t{ordered} * (std::int64_t{1} << 32) + static_cast<std::int64_t>(place);
+}
+
+/// The last points of a cloud whose size is no multiple of four, as four.
+struct LastPoints
+{
+  LastPoints(const LabelledCloud& cloud, std::size_t begin, std::size_t end)
+  {
+    std::copy(&cloud.points[begin], &cloud.points[begin] + (end - begin), points);
+  }
+  LabelledPoint points[4];
+};
 }  // namespace
 
-GroundSurface::GroundSurface() : lowest_(kCells + 1), ground_(kCells), expected_(kSectors), lines_(kCells + 1)
+GroundSurface::GroundSurface()
+    : returns_(kCells + 1),
+      lowest_returns_(kCells),
+      lowest_(kCells),
+      ground_(kCells),
+      expected_(kSectors),
+      lines_(kCells + 1)
 {
   static_assert(kSectors == PolarGrid::kSectors);
 }
 
-bool GroundSurface::find(const LabelledCloud& cloud, float max_range_m, float max_slope,
-                         std::vector<GroundedReturn>& returns)
+bool GroundSurface::find(const LabelledCloud& cloud, float max_range_m, float max_slope)
 {
-  sortIntoCells(cloud, max_range_m, returns);
+  sortIntoCells(cloud, max_range_m);
   const bool found = findPlane(cloud);
   if (found)
   {
-    follow(cloud, returns, max_slope);
+    measureLowest();
+    follow(max_slope);
     bridge();
   }
   else
@@ -62,37 +92,38 @@ bool GroundSurface::find(const LabelledCloud& cloud, float max_range_m, float ma
   return found;
 }
 
-void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns)
+void GroundSurface::sortIntoCells(const LabelledCloud& cloud, float max_range_m)
 {
-  const float max_squared_range = max_range_m * max_range_m;
-  const std::size_t size = cloud.points.size();
-  lowest_.assign(kCells + 1, {kFar, 0, -kFar});
+  returns_.assign(kCells + 1, {kNothing, -kFar});
+  const std::size_t size = cloud.points.size(), whole = size / 4 * 4;
   cell_of_.resize(size);
-  returns.resize(size);
-  std::size_t i = 0;
-  for (; i + 4 <= size; i += 4) locate(&cloud.points[i], max_squared_range, &returns[i], &cell_of_[i]);
-  if (i < size)
+  for (std::size_t begin = 0; begin < whole; begin += kBlock)
   {
-    LabelledPoint rest[4];
-    std::copy(cloud.points.begin() + static_cast<std::ptrdiff_t>(i), cloud.points.end(), rest);
-    GroundedReturn rest_returns[4];
-    std::uint16_t rest_cells[4];
-    locate(rest, max_squared_range, rest_returns, rest_cells);
-    std::copy_n(rest_returns, size - i, &returns[i]);
-    std::copy_n(rest_cells, size - i, &cell_of_[i]);
+    const std::size_t end = std::min(begin + kBlock, whole);
+    findCells(&cloud.points[begin], end - begin, max_range_m, &cell_of_[begin]);
+    takeLowest(cloud, begin, end);
   }
-  Lowest* const lowest = lowest_.data();
-  for (i = 0; i < size; ++i)
+  if (whole == size) return;
+  const LastPoints last(cloud, whole, size);
+  std::uint16_t cells[4];
+  findCells(last.points, 4, max_range_m, cells);
+  std::copy_n(cells, size - whole, &cell_of_[whole]);
+  takeLowest(cloud, whole, size);
+}
+
+void GroundSurface::takeLowest(const LabelledCloud& cloud, std::size_t begin, std::size_t end)
+{
+  CellReturns* const cells = returns_.data();
+  const std::uint16_t* const cell_of = cell_of_.data();
+  const LabelledPoint* const points = cloud.points.data();
+  for (std::size_t i = begin; i < end; ++i)
   {
-    Lowest& low = lowest[cell_of_[i]];
-    const float z = cloud.points[i].z;
+    CellReturns& here = cells[cell_of[i]];
+    const float z = points[i].z;
     // without a branch: no predictor knows which return is lower
-    const std::uint32_t is_lower = 0U - static_cast<std::uint32_t>(z < low.z);
-    low.z = std::min(low.z, z);
-    low.top = std::max(low.top, z);
-    low.point = (static_cast<std::uint32_t>(i) & is_lower) | (low.point & ~is_lower);
+    here.lowest = std::min(here.lowest, placeByHeight(z, i));
+    here.top = std::max(here.top, z);
   }
-  lowest_[kNoCell] = {kFar, 0, -kFar};
 }
 
 bool GroundSurface::findPlane(const LabelledCloud& cloud)
@@ -100,33 +131,45 @@ bool GroundSurface::findPlane(const LabelledCloud& cloud)
   constexpr float kReach = 20.0F;  // [m]
   near_.clear();
   float bottom = kFar;
-  for (const Lowest& low : lowest_) bottom = std::min(bottom, low.z);
+  for (std::uint32_t cell = 0; cell < kCells; ++cell)
+  {
+    lowest_returns_[cell] = {kNaN, kNaN, kNaN};
+    if (returns_[cell].lowest == kNothing) continue;
+    const LabelledPoint& p = cloud.points[static_cast<std::uint32_t>(returns_[cell].lowest)];
+    lowest_returns_[cell] = {p.x, p.y, p.z};
+    bottom = std::min(bottom, p.z);
+  }
   for (std::uint32_t sector = 0; sector < kSectors; ++sector)
     for (std::uint32_t bin = 0; kGrid.middleOf(bin) < kReach; ++bin)
-    {
-      const Lowest& low = lowest_[PolarGrid::cell(bin, sector)];
-      if (low.z == kFar) continue;
-      const LabelledPoint& p = cloud.points[low.point];
-      near_.push_back({p.x, p.y, p.z});
-    }
+      if (const LowReturn& low = lowest_returns_[PolarGrid::cell(bin, sector)]; !std::isnan(low.z))
+        near_.push_back(low);
   if (findGroundPlane(near_, plane_)) return true;
   plane_ = {0.0F, 0.0F, bottom};
   return false;
 }
 
-void GroundSurface::follow(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float max_slope)
+void GroundSurface::measureLowest()
+{
+  for (std::uint32_t cell = 0; cell < kCells; ++cell)
+  {
+    const LowReturn& low = lowest_returns_[cell];
+    const float range = std::sqrt(low.x * low.x + low.y * low.y);
+    lowest_[cell] = {plane_.heightOf(low.x, low.y, low.z), range > 0.0F ? range : 0.0F, returns_[cell].top - low.z};
+  }
+}
+
+void GroundSurface::follow(float max_slope)
 {
   std::fill_n(ground_.begin(), kSectors, Ground{0.0F, 0.0F, 0.0F, 1.0F});
   for (std::uint32_t bin = 1; bin < kBins; ++bin)
   {
-    followTo(bin, cloud, returns, max_slope);
+    followTo(bin, max_slope);
     refuseIslands(bin);
   }
 }
 
 /// The cells of a bin, from those inside of them.
-void GroundSurface::followTo(std::uint32_t bin, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                             float max_slope)
+void GroundSurface::followTo(std::uint32_t bin, float max_slope)
 {
   constexpr float kNoise = 0.12F;    // [m] range noise, gravel, grass
   constexpr float kMostStep = 0.5F;  // [m] below a bumper
@@ -147,12 +190,10 @@ void GroundSurface::followTo(std::uint32_t bin, const LabelledCloud& cloud, cons
     const Lowest& lowest = lowest_[cell];
     expected_[sector] = expected;
     ground_[cell] = {expected, middle, unseen + step, 1.0F / (1.0F + unseen + step)};
-    if (lowest.z == kFar) continue;
-    const LabelledPoint& low = cloud.points[lowest.point];
-    const float found = plane_.heightOf(low.x, low.y, low.z);
-    const bool is_face = lowest.top - lowest.z > kFace;
+    const bool is_face = lowest.rise > kFace;
     const float gate = std::min(is_face ? kFaceStep : kMostStep, kNoise + max_slope * (unseen + step));
-    if (std::abs(found - expected) < gate) ground_[cell] = {found, returns[lowest.point].range, 0.0F, 1.0F};
+    if (lowest.range > 0.0F && std::abs(lowest.height - expected) < gate)
+      ground_[cell] = {lowest.height, lowest.range, 0.0F, 1.0F};
   }
 }
 
@@ -217,14 +258,14 @@ void GroundSurface::flatten()
 
 void GroundSurface::drawLines()
 {
-  lines_[kNoCell] = {0.0F, 0.0F, 0.0F};
+  lines_[kNoCell] = {};
   for (std::uint32_t cell = 0; cell < kCells; ++cell)
   {
     const Ground& here = ground_[cell];
     const bool is_last = cell + kSectors >= kCells;
     const Ground& next = is_last ? here : ground_[cell + kSectors];
     lines_[cell] = {here.distance, here.height,
-                    is_last ? 0.0F : (next.height - here.height) / (next.distance - here.distance)};
+                    is_last ? 0.0F : (next.height - here.height) / (next.distance - here.distance), 0.0F};
   }
 }
 
@@ -234,19 +275,31 @@ float GroundSurface::heightOf(float x, float y, float z) const
   return plane_.heightOf(x, y, z) - groundAt(kGrid.cellOf(x, y, range), range);
 }
 
-void GroundSurface::writeHeights(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
-                                 std::vector<GroundedReturn>& returns) const
+void GroundSurface::locate(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
+                           std::vector<GroundedReturn>& returns) const
 {
   const SlopedPlane plane = plane_;
-  const auto write = [&](std::size_t i, float height)  // NaN where the range is
-  { returns[i].height = height - groundAt(cell_of_[i], returns[i].range); };
-  std::size_t i = begin;
-  for (; i + 4 <= end; i += 4)
+  const Line* const lines = lines_.data();
+  const auto locateFour = [&](const LabelledPoint* points, const std::uint16_t* cells, GroundedReturn* to)
   {
-    const FourPoints p(&cloud.points[i]);
-    const FourFloats height = p.z - plane.slope_x * p.x - plane.slope_y * p.y - plane.offset;
-    for (int k = 0; k < 4; ++k) write(i + static_cast<std::size_t>(k), height[k]);
-  }
-  for (; i < end; ++i) write(i, plane.heightOf(cloud.points[i].x, cloud.points[i].y, cloud.points[i].z));
+    const FourPoints p(points);
+    FourInts cell = {cells[0], cells[1], cells[2], cells[3]};
+    const FourFloats range = rangesOf(p, cell != static_cast<std::int32_t>(kNoCell));
+    const FourFloats begins = {lines[cells[0]].distance, lines[cells[1]].distance, lines[cells[2]].distance,
+                               lines[cells[3]].distance};
+    cell -= (range < begins) & static_cast<std::int32_t>(kSectors);  // the first bin has its at 0 m
+    const auto line = [&](int k) { return loadFour(&lines[static_cast<std::uint32_t>(cell[k])].distance); };
+    const FourColumns from(line(0), line(1), line(2), line(3));  // distance, ground, rise
+    const FourFloats over_plane = p.z - plane.slope_x * p.x - plane.slope_y * p.y - plane.offset;
+    writeInterleaved(range, over_plane - (from.second + from.third * (range - from.first)), &to->range);
+  };
+  std::size_t i = begin;
+  for (; i + 4 <= end; i += 4) locateFour(&cloud.points[i], &cell_of_[i], &returns[i]);
+  if (i == end) return;
+  GroundedReturn rest[4];
+  std::uint16_t cells[4] = {kNoCell, kNoCell, kNoCell, kNoCell};
+  std::copy(&cell_of_[i], &cell_of_[i] + (end - i), cells);
+  locateFour(LastPoints(cloud, i, end).points, cells, rest);
+  std::copy(rest, rest + (end - i), &returns[i]);
 }
 }  // namespace lidar_panoptic_clustering

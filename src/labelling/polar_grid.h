@@ -12,7 +12,8 @@
 namespace lidar_panoptic_clustering
 {
 /// Sectors of two degrees (half a metre at 15 m) by bins that grow with the range, as the rings on the ground move
-/// apart. The cells of a bin lie in a row, so that neighbours along a scan line are neighbours here.
+/// apart: of half a metre up to 10 m, of 1 m up to 30, 2 up to 60, 4 up to 120. The cells of a bin lie in a row, so
+/// that neighbours along a scan line are neighbours here.
 class PolarGrid
 {
 public:
@@ -23,17 +24,9 @@ public:
   PolarGrid()
   {
     std::uint32_t bin = 0;
-    float begin = 0.0F;
-    cell_of_step_.back() = kCells;
-    for (const Zone& zone : kZones)
-      for (; begin < zone.end; begin += zone.width, ++bin)
-      {
-        middle_[bin] = begin + 0.5F * zone.width;
-        const auto first = static_cast<std::size_t>(begin / kFinest);
-        const auto last = static_cast<std::size_t>((begin + zone.width) / kFinest);
-        for (std::size_t step = first; step < last; ++step)
-          cell_of_step_[step] = static_cast<std::uint16_t>(cell(bin, 0));
-      }
+    for (std::uint32_t step = 0, begin = 0; bin < kBins; ++step)
+      if (binOf(static_cast<float>(step + 1)) != bin)
+        middle_[bin++] = 0.5F * kFinest * static_cast<float>(begin + step + 1), begin = step + 1;
   }
 
   /// Its middle [m].
@@ -42,34 +35,37 @@ public:
   static std::uint32_t cell(std::uint32_t bin, std::uint32_t sector) { return bin * kSectors + sector; }
 
   /// The cell of a place [m], `range` [m] away; the last bin holds all beyond it.
-  std::uint32_t cellOf(float x, float y, float range) const
+  static std::uint32_t cellOf(float x, float y, float range)
   {
-    const auto step = static_cast<std::uint32_t>(range / kFinest);
-    return cell_of_step_[std::min<std::size_t>(step, kSteps - 1)] + sectorOf(x, y);
+    const std::uint32_t bin = std::min(kBins - 1, binOf(std::floor(std::min(range, kEnd) / kFinest)));
+    return cell(bin, sectorOf(x, y));
   }
 
   /// The same of four places at once; kCells where `is_place` is 0.
-  void cellsOf(const FourFloats& x, const FourFloats& y, const FourFloats& range, const FourInts& is_place,
-               std::uint16_t* cells) const
+  static FourInts cellsOf(const FourFloats& x, const FourFloats& y, const FourFloats& range, const FourInts& is_place)
   {
     const FourFloats turn = y / (absolute(x) + absolute(y));
     const FourFloats quarters = select(x >= 0.0F, 1.0F + turn, 3.0F - turn);
-    const FourFloats beyond = broadcast(kSteps - 1), last = broadcast(kSectors - 1), none = broadcast(kSteps);
-    const FourFloats scaled = range / kFinest, around = quarters * (0.25F * kSectors);
-    const FourInts step = truncated(select(is_place, select(scaled < beyond, scaled, beyond), none));
-    const FourInts sector = truncated(select(around < last, around, last)) & is_place;
-    for (int k = 0; k < 4; ++k)
-      cells[k] = static_cast<std::uint16_t>(cell_of_step_[static_cast<std::uint32_t>(step[k])] + sector[k]);
+    const FourFloats around = smaller(quarters * (0.25F * kSectors), broadcast(kSectors - 1));
+    const FourFloats steps = asFloats(truncated(smaller(range, broadcast(kEnd)) / kFinest));
+    const FourFloats near = smaller(steps, 10.0F + 0.5F * steps);
+    const FourFloats far = smaller(25.0F + 0.25F * steps, smaller(40.0F + 0.125F * steps, broadcast(kBins - 1)));
+    const FourInts bin = truncated(smaller(near, far));
+    const FourFloats cells = asFloats(bin) * float{kSectors} + asFloats(truncated(around));  // exact below 2^24
+    return select(is_place, truncated(cells), FourInts{} + static_cast<std::int32_t>(kCells));
   }
 
 private:
-  struct Zone
+  static constexpr float kFinest = 0.5F;  // [m]
+  static constexpr float kEnd = 1000.0F;  // [m] beyond the last bin, and far from what 32 bits do not hold
+
+  /// Of a place so many whole steps of kFinest away; the lines of the zones meet where these do.
+  static std::uint32_t binOf(float steps)
   {
-    float end, width;  // [m]
-  };
-  static constexpr std::array<Zone, 4> kZones = {{{10.0F, 0.5F}, {30.0F, 1.0F}, {60.0F, 2.0F}, {120.0F, 4.0F}}};
-  static constexpr float kFinest = 0.5F;
-  static constexpr std::size_t kSteps = 240;
+    const float near = std::min(steps, 10.0F + 0.5F * steps),
+                far = std::min(25.0F + 0.25F * steps, 40.0F + 0.125F * steps);
+    return static_cast<std::uint32_t>(std::min(near, far));
+  }
 
   /// By the angle of the square that turns with x and y instead of the circle's: no trigonometry.
   static std::uint32_t sectorOf(float x, float y)
@@ -80,6 +76,5 @@ private:
   }
 
   std::array<float, kBins> middle_{};
-  std::array<std::uint16_t, kSteps + 1> cell_of_step_{};  ///< the first of the bin; last of all kCells
 };
 }  // namespace lidar_panoptic_clustering

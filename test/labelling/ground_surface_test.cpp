@@ -35,10 +35,10 @@ TEST(GroundSurface, HeightsOfACloudAreThoseOfItsPoints)
   {
     const LabelledCloud cloud = tiltedGround(size);
     GroundSurface surface;
-    std::vector<GroundedReturn> returns;
-    ASSERT_TRUE(surface.find(cloud, 300.0F, 0.08F, returns));
-    surface.writeHeights(cloud, 0, size / 3, returns);
-    surface.writeHeights(cloud, size / 3, size, returns);
+    std::vector<GroundedReturn> returns(size);
+    ASSERT_TRUE(surface.find(cloud, 300.0F, 0.08F));
+    surface.locate(cloud, 0, size / 3, returns);
+    surface.locate(cloud, size / 3, size, returns);
     for (std::uint32_t i = 0; i < size; ++i)
     {
       const LabelledPoint& p = cloud.points[i];

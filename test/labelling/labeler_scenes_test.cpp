@@ -70,6 +70,22 @@ TEST(LabelerScenes, TheFootOfAWallIsNoGround)
   EXPECT_LT(Labelled(sceneOf({wall})).of(0).ground, 0.05);
 }
 
+/// Beams go through between its rails, and again above what it stands on; what they meet behind is ground.
+TEST(LabelerScenes, TheLowWallUnderARailFenceIsTheFencesAndNoGround)
+{
+  std::vector<SceneBox> boxes = {{{6.0F, -6.0F, 0.0F}, {6.1F, 6.0F, 0.14F}}};
+  for (const float low : {0.32F, 0.62F, 0.92F}) boxes.push_back({{6.02F, -6.0F, low}, {6.08F, 6.0F, low + 0.1F}});
+  const Labelled scan(sceneOf(boxes));
+  EXPECT_LT(scan.of(0).ground, 0.5);
+  EXPECT_GT(scan.of(kGroundHit).ground, 0.999);
+}
+
+/// Beams go through under a car as under a rail.
+TEST(LabelerScenes, TheGroundUnderASillStaysGround)
+{
+  for (const SceneBox& car : {kCarAhead, kCarBeside}) EXPECT_GT(Labelled(sceneOf({car})).of(kGroundHit).ground, 0.999);
+}
+
 TEST(LabelerScenes, TheBargainGoesTheWayItIsNamed)
 {
   // a van of which only the upper half is seen, over a hedge

@@ -35,15 +35,15 @@ class GroundSurface
 public:
   GroundSurface();
 
-  /// Writes how far away each point of `cloud` is. No return is NaN, infinity, exactly (0, 0, 0), anything straight
-  /// above or below the sensor, and what is farther than `max_range_m`. `max_slope`: rise over run, against the plane.
-  /// Returns whether there is ground; without it, heights are those above the lowest return.
-  bool find(const LabelledCloud& cloud, float max_range_m, float max_slope, std::vector<GroundedReturn>& returns);
+  /// No return is NaN, infinity, exactly (0, 0, 0), anything straight above or below the sensor, and what is farther
+  /// than `max_range_m`. `max_slope`: rise over run, against the plane. Returns whether there is ground; without it,
+  /// heights are those above the lowest return.
+  bool find(const LabelledCloud& cloud, float max_range_m, float max_slope);
 
-  /// Writes the heights of points of the cloud that find() was given, from `begin` to before `end`. Apart from find(),
-  /// so that a row can be worked on while it is in the cache.
-  void writeHeights(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
-                    std::vector<GroundedReturn>& returns) const;
+  /// Writes where points of the cloud that find() was given lie, from `begin` to before `end`; `returns` holds as many
+  /// as the cloud. Apart from find(), so that a row can be worked on while it is in the cache.
+  void locate(const LabelledCloud& cloud, std::size_t begin, std::size_t end,
+              std::vector<GroundedReturn>& returns) const;
 
   /// Above the ground of the last scan [m].
   float heightOf(float x, float y, float z) const;
@@ -54,12 +54,18 @@ public:
 private:
   static constexpr std::uint32_t kSectors = 180;  ///< see PolarGrid
 
-  /// The returns of a cell: the lowest, and how high they reach.
+  /// The returns of a cell.
+  struct CellReturns
+  {
+    std::int64_t lowest;  ///< its height, in an order of whole numbers, and below that its place in the cloud
+    float top;            ///< how high they reach
+  };
+  /// The lowest return of a cell, on its own.
   struct Lowest
   {
-    float z;
-    std::uint32_t point;
-    float top;
+    float height;  ///< above the plane [m]
+    float range;   ///< horizontal [m]; 0: there is none
+    float rise;    ///< of the cell's highest above it [m]
   };
   /// The ground of a cell.
   struct Ground
@@ -74,13 +80,15 @@ private:
   {
     float distance, ground;  ///< where it begins: horizontal [m]; above the plane [m]
     float rise;              ///< over run
+    float unused;            ///< to 16 bytes, so that four are taken at once
   };
 
-  void sortIntoCells(const LabelledCloud& cloud, float max_range_m, std::vector<GroundedReturn>& returns);
+  void sortIntoCells(const LabelledCloud& cloud, float max_range_m);
+  void takeLowest(const LabelledCloud& cloud, std::size_t begin, std::size_t end);
   bool findPlane(const LabelledCloud& cloud);
-  void follow(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, float max_slope);
-  void followTo(std::uint32_t bin, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                float max_slope);
+  void measureLowest();
+  void follow(float max_slope);
+  void followTo(std::uint32_t bin, float max_slope);
   void refuseIslands(std::uint32_t bin);
   void bridge();
   void flatten();
@@ -94,11 +102,13 @@ private:
   }
 
   SlopedPlane plane_;
-  std::vector<std::uint16_t> cell_of_;  ///< by point
-  std::vector<Lowest> lowest_;          ///< by cell
-  std::vector<LowReturn> near_;         ///< the lowest of the cells around the sensor
-  std::vector<Ground> ground_;          ///< by cell
-  std::vector<float> expected_;         ///< by sector: what the cells inside let expect of the bin in hand
-  std::vector<Line> lines_;             ///< by cell
+  std::vector<std::uint16_t> cell_of_;     ///< by point
+  std::vector<CellReturns> returns_;       ///< by cell
+  std::vector<LowReturn> lowest_returns_;  ///< by cell; NaN where there is none
+  std::vector<Lowest> lowest_;             ///< by cell
+  std::vector<LowReturn> near_;            ///< the lowest of the cells around the sensor
+  std::vector<Ground> ground_;             ///< by cell
+  std::vector<float> expected_;            ///< by sector: what the cells inside let expect of the bin in hand
+  std::vector<Line> lines_;                ///< by cell
 };
 }  // namespace lidar_panoptic_clustering

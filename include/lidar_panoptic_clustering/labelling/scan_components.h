@@ -76,7 +76,9 @@ public:
 
   /// The pixels of the returns above the ground, in row-major order.
   const std::vector<std::uint32_t>& pixels() const { return pixels_; }
-  /// The pixels of returns on the ground that are the feet of what stands there.
+  /// The pixels of returns below where parts begin that are the feet of what stands there: below a part and as far
+  /// away, one after the other, or beneath a gap of up to 4 rows through which beams went on, as between a fence's
+  /// rails and the low wall that these stand on.
   const std::vector<std::uint32_t>& feet() const { return feet_; }
   /// The part of a pixel, kNone for those without.
   std::uint32_t partOf(std::size_t pixel) const { return part_of_[pixel]; }
@@ -92,13 +94,19 @@ private:
     std::uint32_t a, b;
   };
   class RowLinker;
+  static constexpr std::uint32_t kNoPixel = 0x80000000;  ///< farther from any pixel than the reach
+  static constexpr std::uint32_t kColumnReach = 8, kRowReach = 4;
 
+  std::size_t gatherRow(const GroundedReturn* row, std::uint32_t begin, std::uint32_t* to);
   void numberParts();
   void joinParts();
   void examineTops(const LabelledCloud& cloud, bool highest_first);
   void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
   void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
+  void fetchPart(std::uint32_t run) const;
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
+  void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
+                    std::uint32_t length);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
                   std::int32_t direction);
 
@@ -108,10 +116,11 @@ private:
   DisjointSets sets_;
   std::vector<std::uint32_t> part_of_;
   std::vector<std::uint32_t> pixels_;        ///< of the returns above the ground, in row-major order
+  std::vector<std::uint32_t> row_pixels_;    ///< those of the row in hand, and a place more
   std::vector<std::uint32_t> begin_of_run_;  ///< in pixels_; a run lies in one row, and the runs one after the other
   std::vector<std::uint32_t> pixel_before_;  ///< by column: that of the last return above the ground
   std::vector<std::uint32_t> feet_;
-  std::vector<std::uint8_t> has_return_;  ///< by column
+  std::vector<std::int32_t> has_return_;  ///< by column: not 0
   std::vector<Pair> loose_;               ///< runs closer than the link, not the step
   std::vector<std::uint32_t> part_of_run_;
   std::vector<ScanComponent> parts_, components_;
