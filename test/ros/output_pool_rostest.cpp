@@ -95,11 +95,12 @@ protected:
   {
     ASSERT_TRUE(send(8, held));
     constexpr int kScans = 20;
-    const std::size_t all = all_blocks, large = large_blocks;
+    const std::size_t all_before = all_blocks, large_before = large_blocks;
     ASSERT_TRUE(send(kScans, held));
-    EXPECT_EQ(large_blocks - large, 0U) << "with " << held << " outputs held by a reader";
-    std::cout << GetParam() << ", " << held << " outputs held: " << (large_blocks - large) / double{kScans}
-              << " blocks of 64 KB and more a scan, " << (all_blocks - all) / double{kScans} << " of any size\n";
+    const std::size_t all = all_blocks - all_before, large = large_blocks - large_before;
+    EXPECT_EQ(large, 0U) << "with " << held << " outputs held by a reader";
+    std::cout << GetParam() << ", " << held << " outputs held: " << large << " blocks of 64 KB and more for " << kScans
+              << " scans, " << all / kScans << " of any size a scan\n";
   }
 
   void SetUp() override
