@@ -119,6 +119,7 @@ void ScanComponents::measureNoise(const std::vector<GroundedReturn>& returns)
   const auto isGround = [&](std::size_t i) { return returns[i].height < distances_.above; };  // false for no return
   bends_.clear();
   const std::size_t stride = returns.size() / kTriples | 1U;
+  bends_.reserve(returns.size() / stride + 1);
   for (std::size_t i = stride + 1; i < returns.size(); i += stride)
     if (i % columns_ >= 2 && isGround(i) && isGround(i - 1) && isGround(i - 2))
       bends_.push_back(std::abs(bendOf(&returns[i])));
