@@ -20,15 +20,19 @@ bool isHighestFirst(const LabelledCloud& cloud, const std::vector<GroundedReturn
       fall += (middle - static_cast<double>(i / cloud.width)) * double{cloud.points[i].z / returns[i].range};
   return fall >= 0.0;
 }
-/// Whether a return and the two before it in its line lie on no smooth surface.
-inline bool isRough(const LabelledPoint* last, const GroundedReturn* at)
+/// How far the last of three neighbours in a line is from where the first two lead [m].
+inline float bendOf(const GroundedReturn* last)
 {
-  constexpr float kNoise = 0.04F;  // [m] twice the range noise of usual sensors
-  constexpr float kBend = 0.75F;   // of the distance between neighbouring beams
+  return last[0].range - 2.0F * last[-1].range + last[-2].range;
+}
+
+/// Whether a return and the two before it in its line lie on no smooth surface, for all that the ranges' noise bends.
+inline bool isRough(const LabelledPoint* last, const GroundedReturn* at, float noise)
+{
+  constexpr float kBend = 0.75F;  // of the distance between neighbouring beams
   const LabelledPoint &a = last[-1], &b = last[0];
   const float spacing = std::abs(a.x * b.y - a.y * b.x);  // times range
-  const float bend = at[0].range - 2.0F * at[-1].range + at[-2].range;
-  return (std::abs(bend) - kNoise) * at[0].range > kBend * spacing;
+  return (std::abs(bendOf(at)) - noise) * at[0].range > kBend * spacing;
 }
 }  // namespace
 
@@ -63,6 +67,7 @@ void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<Ground
   const bool highest_first = isHighestFirst(cloud, returns);
   examineTops(cloud, highest_first);
   examineFeet(returns, highest_first);
+  measureNoise(returns);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run)
   {
     fetchPart(run + kAhead);
@@ -101,6 +106,28 @@ void ScanComponents::joinParts()
     const std::uint32_t root = sets_.find(part);  // the smallest member
     component_of_part_[part] = root == part ? component_count_++ : component_of_part_[root];
   }
+}
+
+/// What noise bends smooth surfaces by, told by the ground: lidars differ, and where their beams are close to each
+/// other noise alone bends three returns by more than these lie apart.
+void ScanComponents::measureNoise(const std::vector<GroundedReturn>& returns)
+{
+  constexpr float kLeast = 0.04F;       // [m] grass and gravel
+  constexpr float kDeviations = 1.5F;   // of a bend's noise, that a smooth surface is hardly ever beyond
+  constexpr float kOfMedian = 1.4826F;  // a normal distribution's standard deviation
+  constexpr std::size_t kTriples = 4096, kFewest = 100;
+  const auto isGround = [&](std::size_t i) { return returns[i].height < distances_.above; };  // false for no return
+  bends_.clear();
+  const std::size_t stride = returns.size() / kTriples | 1U;
+  bends_.reserve(returns.size() / stride + 1);
+  for (std::size_t i = stride + 1; i < returns.size(); i += stride)
+    if (i % columns_ >= 2 && isGround(i) && isGround(i - 1) && isGround(i - 2))
+      bends_.push_back(std::abs(bendOf(&returns[i])));
+  bend_noise_ = kLeast;
+  if (bends_.size() < kFewest) return;
+  const auto middle = bends_.begin() + static_cast<std::ptrdiff_t>(bends_.size() / 2);
+  std::nth_element(bends_.begin(), middle, bends_.end());
+  bend_noise_ = std::max(kLeast, kDeviations * kOfMedian * *middle);
 }
 
 /// Of the sensor's highest beams, those that do not point down: a scan in which nothing is as high as the sensor does
@@ -215,7 +242,7 @@ void ScanComponents::measurePiece(const LabelledCloud& cloud, const std::vector<
   if (from >= end) return;
   c.triples += end - from;
   for (std::uint32_t pixel = from; pixel < end; ++pixel)
-    c.rough_triples += isRough(&points[pixel], &at[pixel]) ? 1U : 0U;
+    c.rough_triples += isRough(&points[pixel], &at[pixel], bend_noise_) ? 1U : 0U;
 }
 
 /// A part ends with this pixel, unless it goes on beyond columns that have no return at all, as an image of more

@@ -30,7 +30,8 @@ struct ScanComponent
   /// Columns in which another component, nearer, stands before what is below the lowest return.
   std::uint32_t hidden = 0;
 
-  /// Triples of neighbours in a scan line, and those that no smooth surface has, as foliage.
+  /// Triples of neighbours in a scan line, and those that no smooth surface has, as foliage, by more than the noise of
+  /// ranges bends the ground.
   std::uint32_t triples = 0, rough_triples = 0;
 
   /// Ends of its pieces of scan lines, and those where what comes next lies behind it, or nothing does: it stands free.
@@ -103,6 +104,7 @@ private:
   void examineTops(const LabelledCloud& cloud, bool highest_first);
   void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
   void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
+  void measureNoise(const std::vector<GroundedReturn>& returns);
   void fetchPart(std::uint32_t run) const;
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
@@ -126,5 +128,7 @@ private:
   std::vector<ScanComponent> parts_, components_;
   std::vector<std::uint32_t> component_of_part_;
   std::uint32_t component_count_ = 0;
+  std::vector<float> bends_;  ///< of the ground, some of them [m]
+  float bend_noise_ = 0.0F;   ///< [m]
 };
 }  // namespace lidar_panoptic_clustering
