@@ -109,3 +109,8 @@ TEST_F(Detections, AreNotAdvertisedWithoutVisionMsgs)
 #endif
 }  // namespace
 }  // namespace lidar_panoptic_clustering
+
+int main(int argc, char** argv)
+{
+  return lidar_panoptic_clustering::runGraphTests(argc, argv, "detections_test");
+}
