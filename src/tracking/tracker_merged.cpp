@@ -63,14 +63,13 @@ void Tracker::findHeld(const Observations& observations, std::uint32_t i)
 }
 
 /// Gives a track its share of an observation, whose shares begin at `first`, where it lies beside all other tracks. Two
-/// that together are no larger than one object of their class are of one.
+/// that together are hardly larger than one object of their class are of one.
 void Tracker::share(std::uint32_t i, const Held& held, std::size_t first)
 {
   constexpr float kSideBySide = 0.4F;  // tracks that overlap by more are of one object
-  constexpr float kSmallTwo = 0.7F;    // times the usual size: two people who stand close are no larger than one may be
+  constexpr float kMayBeTwo = 0.7F;    // times the usual size
   const ClassInfo& info = (*table_)[tracks_[held.track].object.class_index];
   const Extent& outline = expected_[held.track].outline;
-  const float largest = isSmall(info) ? kSmallTwo : kIsTwo;
   bool is_sure = info.length_m > 0.0F || !held.must_be_sure;
   for (std::size_t s = first; s < shares_.size(); ++s)
   {
@@ -78,8 +77,8 @@ void Tracker::share(std::uint32_t i, const Held& held, std::size_t first)
     if (leastOverlap(together, outline) >= kSideBySide) return;
     together.add(outline);
     if (info.length_m <= 0.0F) continue;
-    if (together.fitsTurned(largest * info.length_m, largest * info.width_m)) return;
-    is_sure = is_sure && !together.fitsTurned(kIsTwo * info.length_m, kIsTwo * info.width_m);
+    if (together.fits(kMayBeTwo * info.length_m, kMayBeTwo * info.width_m)) return;
+    is_sure = is_sure && !together.fits(kIsTwo * info.length_m, kIsTwo * info.width_m);
   }
   if (held.must_be_sure && (!is_sure || shares_.size() == first)) return;
   shares_.push_back({i, outline, is_sure});
