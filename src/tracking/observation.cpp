@@ -7,6 +7,23 @@
 
 namespace lidar_panoptic_clustering
 {
+bool Extent::fitsTurned(float length, float width) const
+{
+  constexpr int kHeadings = 16;
+  constexpr float kPi = 3.14159265F, kAxis[kAxes] = {0.0F, 0.5F * kPi, 0.25F * kPi, -0.25F * kPi};
+  for (int heading = 0; heading < kHeadings; ++heading)
+  {
+    bool fits = true;
+    for (std::size_t k = 0; k < kAxes && fits; ++k)
+    {
+      const float turn = kPi * static_cast<float>(heading) / kHeadings - kAxis[k];
+      fits = max[k] - min[k] <= length * std::abs(std::cos(turn)) + width * std::abs(std::sin(turn));
+    }
+    if (fits) return true;
+  }
+  return false;
+}
+
 ObservationBuilder::ObservationBuilder(std::shared_ptr<const ClassTable> table) : table_(std::move(table))
 {
   if (!table_) throw std::invalid_argument("tracking needs a class table");

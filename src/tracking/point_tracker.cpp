@@ -18,6 +18,7 @@ void PointTracker::begin(std::int64_t stamp_us, const Eigen::Isometry3d& fixed_f
 {
   stamp_us_ = stamp_us;
   pose_ = fixed_from_sensor;
+  rotation_ = pose_.linear().cast<float>();
   points_.clear(), place_.clear();
   builder_.begin(pose_);
 }
@@ -29,14 +30,19 @@ void PointTracker::finish()
   objects_ = is_parted ? &tracker_.update(stamp_us_, *seen_) : &tracker_.updateMatched(stamp_us_, *seen_);
 }
 
+/// Not finite where a coordinate is not: a product with 0 is NaN then.
+Eigen::Vector2f PointTracker::inFixedAxes(const Point& point) const
+{
+  return (rotation_ * Eigen::Vector3f(point.x, point.y, point.z)).head<2>();
+}
+
 const std::vector<Tracker::Share>& PointTracker::findParts()
 {
-  const Eigen::Matrix3f rotation = pose_.linear().cast<float>();
   for (std::size_t i = 0; i < points_.size(); ++i)
   {
     if (!parting_.wants(place_[i])) continue;
-    const Eigen::Vector3f p(points_[i].x, points_[i].y, points_[i].z);
-    if (p.allFinite()) parting_.add(place_[i], (rotation * p).head<2>());
+    const Eigen::Vector2f p = inFixedAxes(points_[i]);
+    if (p.allFinite()) parting_.add(place_[i], p);
   }
   return parting_.finish();
 }
@@ -49,7 +55,6 @@ bool PointTracker::part(const std::vector<Tracker::Share>& parts)
   first_part_.assign(count, kNone);
   for (std::uint32_t k = 0; k < parts.size(); ++k)
     if (first_part_[parts[k].observation] == kNone) first_part_[parts[k].observation] = k;
-  const Eigen::Matrix3f rotation = pose_.linear().cast<float>();
   builder_.begin(pose_);
   for (std::size_t i = 0; i < points_.size(); ++i)
   {
@@ -58,7 +63,7 @@ bool PointTracker::part(const std::vector<Tracker::Share>& parts)
     std::uint32_t instance = place + 1;
     if (first_part_[place] != kNone)
     {
-      const Eigen::Vector3f p = rotation * Eigen::Vector3f(point.x, point.y, point.z);
+      const Eigen::Vector2f p = inFixedAxes(point);
       std::uint32_t nearest = first_part_[place];
       float least = Extent::kFar;
       for (std::uint32_t k = first_part_[place]; k < parts.size() && parts[k].observation == place; ++k)

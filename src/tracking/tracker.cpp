@@ -67,7 +67,7 @@ bool Tracker::isAlive(std::uint32_t track) const
 {
   const auto at = std::lower_bound(tracks_.begin(), tracks_.end(), track,
                                    [](const Track& t, std::uint32_t id) { return t.object.track < id; });
-  return at != tracks_.end() && at->object.track == track;
+  return at != tracks_.end() && at->object.track == track && !at->has_ended;
 }
 
 const std::vector<TrackedObject>& Tracker::update(std::int64_t stamp_us, const Observations& observations)
@@ -102,7 +102,7 @@ void Tracker::dropLost(std::int64_t stamp_us)
   std::size_t kept = 0;
   for (std::size_t t = 0; t < tracks_.size(); ++t)
   {
-    if (seconds(stamp_us - tracks_[t].object.last_seen_us) > config_.max_missed_s) continue;
+    if (tracks_[t].has_ended || seconds(stamp_us - tracks_[t].object.last_seen_us) > config_.max_missed_s) continue;
     if (kept != t)
     {
       tracks_[kept] = tracks_[t];
@@ -151,58 +151,6 @@ void Tracker::assign(const Observations& observations)
     if (track_of_[i] != kNone) observed_in_[track_of_[i]] = i;
 }
 
-/// Whether what was seen lies within the outline the track had, and may be of one object with what was seen of it. The
-/// outline alone does not tell: two people who were one instance before have one track.
-bool Tracker::isPartOf(const Observation& observation, std::uint32_t track) const
-{
-  constexpr float kMarginM = 0.5F;
-  if (tracks_[track].object.scans < 2) return false;
-  const ClassInfo &ours = (*table_)[tracks_[track].object.class_index], &theirs = (*table_)[observation.class_index];
-  if (ours.group != theirs.group) return false;
-  const Extent& outline = expected_[track].outline;
-  for (std::size_t k = 0; k < Extent::kAxes; ++k)
-    if (observation.extent.min[k] < outline.min[k] - kMarginM || observation.extent.max[k] > outline.max[k] + kMarginM)
-      return false;
-  if (!isSmall(ours)) return true;
-  Extent together = whole_[track].extent;
-  together.add(observation.extent);
-  return together.fits(ours.length_m, ours.width_m);
-}
-
-/// Whether an observation may be a part of a track that is seen elsewhere too: it has no track, or a fragment's.
-bool Tracker::isTorn(std::uint32_t i, std::uint32_t track) const
-{
-  constexpr std::uint32_t kFragment = 5, kOld = 12;  // scans
-  const std::uint32_t own = track_of_[i];
-  if (own == track || observed_in_[track] == kNone) return false;
-  return own == kNone || (tracks_[own].object.scans < kFragment && tracks_[track].object.scans >= kOld);
-}
-
-/// Gives instances that are left, or have a fragment's track, to the track they are a part of; whole_ is what was seen
-/// of each track.
-void Tracker::joinParts(const Observations& observations)
-{
-  whole_.resize(tracks_.size());
-  for (std::size_t t = 0; t < tracks_.size(); ++t)
-    if (observed_in_[t] != kNone) whole_[t] = observations.list[observed_in_[t]];
-  for (std::uint32_t i = 0; i < track_of_.size(); ++i)
-  {
-    std::uint32_t best = kNone;
-    float least = 0.0F;
-    for (std::uint32_t c = candidates_begin_[i]; c < candidates_begin_[i + 1]; ++c)
-    {
-      const auto [track, cost] = candidates_[c];
-      if (!isTorn(i, track) || !isPartOf(observations.list[i], track)) continue;
-      if (best == kNone || cost < least) best = track, least = cost;
-    }
-    if (best == kNone) continue;
-    if (track_of_[i] != kNone) observed_in_[track_of_[i]] = kNone;
-    track_of_[i] = best;
-    whole_[best].extent.add(observations.list[i].extent);
-    whole_[best].point_count += observations.list[i].point_count;
-  }
-}
-
 void Tracker::learn(std::int64_t stamp_us, const Observations& observations)
 {
   for (std::uint32_t t = 0; t < tracks_.size(); ++t)
@@ -219,6 +167,7 @@ void Tracker::learn(std::int64_t stamp_us, const Observations& observations)
   }
   for (std::uint32_t i = 0; i < track_of_.size(); ++i)
     if (track_of_[i] != kNone) vote(track_of_[i], observations.list[i]);
+  for (const std::uint32_t t : ended_) tracks_[t].has_ended = true;
 }
 
 void Tracker::tellMotion(Track& track)

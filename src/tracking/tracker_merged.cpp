@@ -35,12 +35,12 @@ float heldShare(const Extent& outline, const Extent& seen)
 }
 }  // namespace
 
-/// Lists the tracks that should be within an observation, the ones seen in nothing else first.
+/// Lists the tracks that should be within an observation or reach into it, the ones seen in nothing else first.
 void Tracker::findHeld(const Observations& observations, std::uint32_t i)
 {
-  constexpr std::uint32_t kFewest = 3;               // scans that make a track more than a fragment
-  constexpr float kOwnLeast = 0.2F, kLeast = 0.3F;   // share of the outline
-  constexpr float kOwn = 3.0F, kSeenNowhere = 1.0F;  // in rank
+  constexpr std::uint32_t kFewest = 3;                                // scans that make a track more than a fragment
+  constexpr float kOwnLeast = 0.2F, kLeast = 0.3F, kReach = 0.15F;    // share of the outline
+  constexpr float kOwn = 3.0F, kSeenNowhere = 1.0F, kSeenToo = 1.0F;  // in rank
   held_.clear();
   const auto& group = (*table_)[observations.list[i].class_index].group;
   for (std::uint32_t c = candidates_begin_[i]; c < candidates_begin_[i + 1]; ++c)
@@ -49,12 +49,14 @@ void Tracker::findHeld(const Observations& observations, std::uint32_t i)
     if (tracks_[track].object.scans < kFewest || (*table_)[tracks_[track].object.class_index].group != group) continue;
     const Extent& outline = expected_[track].outline;
     const float held = heldShare(outline, observations.list[i].extent);
-    if (in == i && held > kOwnLeast) held_.push_back({kOwn, track});
-    if (in == i || held < kLeast) continue;
+    if (in == i && held > kOwnLeast) held_.push_back({kOwn, track, false});
+    if (in == i || held < kReach) continue;
     if (in == kNone)
-      held_.push_back({kSeenNowhere + held, track});
+      held_.push_back({kSeenNowhere + held, track, held < kLeast});
     else if (heldShare(outline, observations.list[in].extent) <= 0.0F)  // it was given what is none of its own
-      held_.push_back({held, track});
+      held_.push_back({held, track, held < kLeast});
+    else  // torn: one part is an instance of its own, another one belongs to what stands beside
+      held_.push_back({held - kSeenToo, track, true});
   }
   std::sort(held_.begin(), held_.end(),
             [](const Held& a, const Held& b) { return a.rank != b.rank ? a.rank > b.rank : a.track < b.track; });
@@ -62,13 +64,13 @@ void Tracker::findHeld(const Observations& observations, std::uint32_t i)
 
 /// Gives a track its share of an observation, whose shares begin at `first`, where it lies beside all other tracks. Two
 /// that together are hardly larger than one object of their class are of one.
-void Tracker::share(std::uint32_t i, std::uint32_t track, std::size_t first)
+void Tracker::share(std::uint32_t i, const Held& held, std::size_t first)
 {
-  constexpr float kSideBySide = 0.4F;                // tracks that overlap by more are of one object
-  constexpr float kMayBeTwo = 0.7F, kIsTwo = 1.15F;  // times the usual size
-  const ClassInfo& info = (*table_)[tracks_[track].object.class_index];
-  const Extent& outline = expected_[track].outline;
-  bool is_sure = true;
+  constexpr float kSideBySide = 0.4F;  // tracks that overlap by more are of one object
+  constexpr float kMayBeTwo = 0.7F;    // times the usual size
+  const ClassInfo& info = (*table_)[tracks_[held.track].object.class_index];
+  const Extent& outline = expected_[held.track].outline;
+  bool is_sure = info.length_m > 0.0F || !held.must_be_sure;
   for (std::size_t s = first; s < shares_.size(); ++s)
   {
     Extent together = shares_[s].outline;
@@ -78,6 +80,7 @@ void Tracker::share(std::uint32_t i, std::uint32_t track, std::size_t first)
     if (together.fits(kMayBeTwo * info.length_m, kMayBeTwo * info.width_m)) return;
     is_sure = is_sure && !together.fits(kIsTwo * info.length_m, kIsTwo * info.width_m);
   }
+  if (held.must_be_sure && (!is_sure || shares_.size() == first)) return;
   shares_.push_back({i, outline, is_sure});
 }
 
@@ -86,7 +89,7 @@ void Tracker::shareOut(const Observations& observations, std::uint32_t i)
   findHeld(observations, i);
   if (held_.size() < 2) return;
   const std::size_t first = shares_.size();
-  for (const Held& held : held_) share(i, held.track, first);
+  for (const Held& held : held_) share(i, held, first);
   if (shares_.size() == first + 1) shares_.pop_back();
 }
 

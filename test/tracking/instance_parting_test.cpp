@@ -64,6 +64,57 @@ TEST_F(InstancePartingTest, TwoPeopleWhoWereNeverSeenApartAreTwo)
   EXPECT_NE(*first.begin(), *second.begin());
 }
 
+TEST_F(InstancePartingTest, ThreeAbreastWhoAreHardlyLargerThanOneAreThree)
+{
+  std::map<int, std::set<std::uint32_t>> all;
+  for (int k = 0; k < 10; ++k)
+  {
+    begin(k);
+    for (int who = 0; who < 3; ++who) add(who, 1, "person", 10.0 + 0.1 * k, 0.6 * who, 0.2, 0.3);
+    for (const auto& [who, ids] : track()) all[who].insert(ids.begin(), ids.end());
+  }
+  std::set<std::uint32_t> different;
+  for (const auto& [who, ids] : all)
+  {
+    EXPECT_EQ(ids.size(), 1U) << who;
+    different.insert(ids.begin(), ids.end());
+  }
+  EXPECT_EQ(different.size(), 3U);
+}
+
+TEST_F(InstancePartingTest, LegsThatAreApartAreOnePerson)
+{
+  begin(0);
+  add(1, 1, "person", 10.0, 0.0, 0.15, 0.2);  // hind foot
+  add(1, 1, "person", 10.3, 0.0, 0.2, 0.5);   // body
+  add(1, 1, "person", 10.7, 0.0, 0.15, 0.2);  // fore foot, 0.23 m before it
+  EXPECT_EQ(track()[1].size(), 1U);
+}
+
+TEST_F(InstancePartingTest, ThePartOfATornCarThatAScanJoinsToTheNextCarStaysItsOwn)
+{
+  for (const double slope : {0.0, 0.4142})  // along x, and 22.5 degrees off: a car a row, 6 m apart
+  {
+    SCOPED_TRACE(slope);
+    std::map<int, std::set<std::uint32_t>> ids;
+    for (int k = 0; k < 20; ++k)
+    {
+      begin(100 * (slope > 0.0) + k);
+      const bool is_torn = k >= 15 && k % 2 == 1;
+      for (int slice = 0; slice < 45; ++slice)
+      {
+        const double x = 10.0 + 0.1 * slice, y = 5.0 + slope * (x - 10.0);
+        add(1, is_torn && slice > 33 ? 2 : 1, "car", x, y, 0.05, 1.6);
+        add(2, 2, "car", x + 5.2, y + 5.2 * slope, 0.05, 1.6);
+      }
+      for (const auto& [car, now] : track()) ids[car].insert(now.begin(), now.end());
+    }
+    EXPECT_EQ(ids[1].size(), 1U);
+    EXPECT_EQ(ids[2].size(), 1U);
+    EXPECT_NE(ids[1], ids[2]);
+  }
+}
+
 TEST_F(InstancePartingTest, OneWithPointsAllOverStaysOneHoweverLarge)
 {
   for (int k = 0; k < 5; ++k)

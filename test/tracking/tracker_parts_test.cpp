@@ -53,6 +53,53 @@ TEST_F(TrackerPartsTest, AFragmentThatHadAnIdOfItsOwnTakesThatOfTheObject)
   }
 }
 
+TEST_F(TrackerPartsTest, TheEndOfAFarCarThatHadAnIdOfItsOwnForLongHasTheOlderOne)
+{
+  for (const double yaw : {0.0, 0.3927})  // 22.5 degrees: half way between two axes
+  {
+    SCOPED_TRACE(yaw);
+    const double start_s = yaw > 0.0 ? 100.0 : 0.0;
+    const double ahead_x = 1.7 * std::cos(yaw), ahead_y = 1.7 * std::sin(yaw);
+    std::uint32_t id = 0;
+    for (int k = 0; k < 40; ++k)
+    {
+      begin();
+      add(1, "car", 10.0 - ahead_x, 3.0 - ahead_y, 1.0, 1.7, yaw);
+      if (k >= 2 && k % 3 != 0)
+        for (const double across : {-0.8, 0.8})  // two corners, 16 points
+          add(2, "car", 10.0 + ahead_x - across * std::sin(yaw), 3.0 + ahead_y + across * std::cos(yaw), 0.05, 0.05,
+              yaw);
+      const auto objects = track(start_s + 0.1 * k);
+      if (k == 0) id = objects.at(1).track;
+      EXPECT_EQ(objects.at(1).track, id) << k;
+      if (k >= 14 && objects.count(2) > 0)
+      {
+        EXPECT_EQ(objects.at(2).track, id) << k;
+      }
+    }
+  }
+}
+
+TEST_F(TrackerPartsTest, CarsOfWhichASideIsSeenStayApart)
+{
+  std::map<std::uint32_t, std::uint32_t> ids;
+  for (int k = 0; k < 30; ++k)
+  {
+    begin();
+    add(1, "car", 10.0, 3.0, 4.5, 0.2);   // the side of one
+    add(2, "car", 10.0, 5.2, 4.5, 0.2);   // and of the one behind it
+    add(3, "car", 20.0, 3.0, 0.3, 1.7);   // the rear of one
+    add(4, "car", 25.5, 3.0, 0.3, 1.7);   // and of the one before it
+    add(5, "car", 10.0, -8.0, 0.4, 1.7);  // the fronts of two that are parked side by side
+    add(6, "car", 10.0, -5.6, 0.4, 1.7);
+    for (const auto& [instance, object] : track(0.1 * k))
+      EXPECT_EQ(ids.emplace(instance, object.track).first->second, object.track) << k;
+  }
+  std::set<std::uint32_t> different;
+  for (const auto& [instance, id] : ids) different.insert(id);
+  EXPECT_EQ(different.size(), 6U);
+}
+
 TEST_F(TrackerPartsTest, OneThatComesOutFromBehindAnotherWithManyTimesThePointsKeepsItsId)
 {
   std::uint32_t id = 0;

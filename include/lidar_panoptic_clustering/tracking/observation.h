@@ -52,6 +52,9 @@ struct Extent
       if (max[k] - min[k] <= length && max[k ^ 1U] - min[k ^ 1U] <= width) return true;
     return false;
   }
+  /// Whether all of it may lie in a rectangle of `length` x `width` [m] in any of sixteen directions. fits() knows the
+  /// axes only: a car that stands 22.5 degrees off seems to be a metre and a half too wide there.
+  bool fitsTurned(float length, float width) const;
   /// Extends it to all of another one.
   void add(const Extent& other)
   {

@@ -49,6 +49,7 @@ private:
     float x, y, z;
     ClassIndex class_index;
   };
+  Eigen::Vector2f inFixedAxes(const Point& point) const;
   const std::vector<Tracker::Share>& findParts();
   bool part(const std::vector<Tracker::Share>& parts);
 
@@ -57,6 +58,7 @@ private:
   InstanceParting parting_;
   std::int64_t stamp_us_ = 0;
   Eigen::Isometry3d pose_ = Eigen::Isometry3d::Identity();
+  Eigen::Matrix3f rotation_ = Eigen::Matrix3f::Identity();  ///< the pose's
   std::vector<Point> points_;
   std::vector<std::uint32_t> place_;       ///< by point, in the list of observations
   std::vector<std::uint32_t> first_part_;  ///< by observation: the first of its parts, kNone for none

@@ -91,6 +91,7 @@ public:
 
 private:
   static constexpr float kDearest = 14.0F;  ///< what a pair may cost, penalties included
+  static constexpr float kIsTwo = 1.15F;    ///< times a class's usual size: larger than one object is
 
   struct Track
   {
@@ -99,6 +100,7 @@ private:
     Extent outline;          ///< from the position
     float points = 0.0F;     ///< in the last scan it was seen in
     ClassIndex prior_class;  ///< of its first scan, or what the vote says
+    bool has_ended = false;  ///< it turned out to be another track's object
   };
   /// Where a track should be in the scan in hand.
   struct Expected
@@ -112,10 +114,17 @@ private:
     float cost;
   };
 
+  struct Held
+  {
+    float rank;  ///< the higher, the sooner it has its share
+    std::uint32_t track;
+    bool must_be_sure;  ///< it has a share only where that is sure, see Share
+  };
+
   void match(std::int64_t stamp_us, const Observations& observations);
   void shareOut(const Observations& observations, std::uint32_t i);
   void findHeld(const Observations& observations, std::uint32_t i);
-  void share(std::uint32_t i, std::uint32_t track, std::size_t first);
+  void share(std::uint32_t i, const Held& held, std::size_t first);
   void expect(double dt, const Eigen::Vector3d& origin);
   void enterIntoGrid();
   void findCandidates(const Observations& observations);
@@ -124,8 +133,10 @@ private:
   double penaltyOf(const Observation& observation, std::uint32_t track) const;
   void assign(const Observations& observations);
   void joinParts(const Observations& observations);
+  void join(const Observation& observation, std::uint32_t& own, std::uint32_t track);
   bool isPartOf(const Observation& observation, std::uint32_t track) const;
-  bool isTorn(std::uint32_t i, std::uint32_t track) const;
+  bool isSameObject(const Observation& observation, std::uint32_t own, std::uint32_t track) const;
+  bool isTorn(const Observation& observation, std::uint32_t own, std::uint32_t track) const;
   void learn(std::int64_t stamp_us, const Observations& observations);
   static void tellMotion(Track& track);
   void follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin);
@@ -163,13 +174,9 @@ private:
   std::vector<std::uint32_t> observed_in_;  ///< by track: the observation assigned to it, or kNone
   std::vector<bool> is_part_;               ///< by observation: of the track, which is seen in another one too
   std::vector<Observation> whole_;          ///< by track: what was seen of it, parts included
+  std::vector<std::uint32_t> ended_;        ///< tracks that turned out to be others'
   std::vector<TrackedObject> objects_;
   std::vector<Share> shares_;
-  struct Held
-  {
-    float rank;  ///< the higher, the sooner it has its share
-    std::uint32_t track;
-  };
   std::vector<Held> held_;  ///< by the observation in hand
 };
 }  // namespace lidar_panoptic_clustering
