@@ -35,8 +35,8 @@ void ClusterNodelet::onInit()
       },
       [this](const CloudPtr& cloud) { mailbox_.put(cloud); });
   advertise();
-  // who listens already may not be told of
-  after_init_.start(getPrivateNodeHandle(), [this] { connect(); });
+  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  connect();
 }
 
 void ClusterNodelet::load()
@@ -80,7 +80,6 @@ void ClusterNodelet::shutdown()
   if (thread_.joinable()) thread_.join();
   // each of these waits for its callback under way; without the lock, which connect() may be waiting for
   diagnostics_.stop();
-  after_init_.stop();
   latched_.stop();
   stopReconfigure();
   input_.shutdown();

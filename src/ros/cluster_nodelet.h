@@ -4,7 +4,6 @@
 #include "lidar_panoptic_clustering/pipeline/factory.h"
 #include "lidar_panoptic_clustering/pipeline/frame_pipeline.h"
 #include "lidar_panoptic_clustering/refinement/instance_boxes.h"
-#include "ros/after_init.h"
 #include "ros/instance_markers.h"
 #include "ros/latched_input.h"
 #include "ros/mailbox.h"
@@ -88,7 +87,6 @@ private:
   ObjectOutputs objects_;
   ros::Subscriber input_;
   LatchedInput<LabelledCloud> latched_;
-  AfterInit after_init_;
   Mailbox<CloudPtr> mailbox_;
   std::thread thread_;
 };

@@ -22,7 +22,6 @@ OrganizerNodelet::~OrganizerNodelet()
   }
   // each of these waits for its callback under way; without the lock, which connect() may be waiting for
   diagnostics_.stop();
-  after_init_.stop();
   latched_.stop();
   input_.shutdown();
   labels_.shutdown();
@@ -53,8 +52,8 @@ void OrganizerNodelet::onInit()
   latched_.start(
       nh, [this] { return isPublished(); }, [this](const CloudPtr& cloud) { repeat(cloud); });
   advertise();
-  // who listens already may not be told of
-  after_init_.start(nh, [this] { connect(); });
+  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  connect();
 }
 
 void OrganizerNodelet::advertise()

@@ -1,6 +1,5 @@
 #pragma once
 
-#include "ros/after_init.h"
 #include "ros/frame_history.h"
 #include "ros/label_matcher.h"
 #include "ros/latched_input.h"
@@ -100,7 +99,6 @@ private:
   std::unique_ptr<LabelMatcher> matcher_;
   std::unique_ptr<FrameHistory> history_;
   LatchedInput<sensor_msgs::PointCloud2> latched_;
-  AfterInit after_init_;
   std::optional<LabelMatcher::Pair> latched_pair_;  ///< the latched cloud and its labels
   std::uint64_t without_scan_ = 0;
   std::uint32_t told_layout_ = 0;  ///< FoundLayout::change

@@ -35,7 +35,6 @@ TrackerNodelet::~TrackerNodelet()
   if (thread_.joinable()) thread_.join();
   // each of these waits for its callback under way; without the lock, which connect() may be waiting for
   diagnostics_.stop();
-  after_init_.stop();
   latched_.stop();
   frame_.stop();
   input_.shutdown();
@@ -67,8 +66,8 @@ void TrackerNodelet::onInit()
       },
       [this](const CloudPtr& cloud) { receive(cloud); });
   advertise();
-  // who listens already may not be told of
-  after_init_.start(getPrivateNodeHandle(), [this] { connect(); });
+  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  connect();
 }
 
 void TrackerNodelet::load()

@@ -2,7 +2,6 @@
 
 #include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/tracking/cloud_tracker.h"
-#include "ros/after_init.h"
 #include "ros/fixed_frame.h"
 #include "ros/latched_input.h"
 #include "ros/mailbox.h"
@@ -101,7 +100,6 @@ private:
   ObjectOutputs objects_;
   ros::Subscriber input_;
   LatchedInput<PanopticCloud> latched_;
-  AfterInit after_init_;
   Mailbox<Scan> mailbox_;
   std::thread thread_;
 };
