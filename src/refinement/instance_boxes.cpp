@@ -1,5 +1,6 @@
 #include "lidar_panoptic_clustering/refinement/instance_boxes.h"
 
+#include "core/make_room.h"
 #include "lidar_panoptic_clustering/geometry/footprint.h"
 
 #include <algorithm>
@@ -36,6 +37,7 @@ const std::vector<InstanceBox>& InstanceBoxes::fit(const ThingScan& scan, const 
 
 void InstanceBoxes::groupByInstance(const ThingScan& scan, const Instances& instances)
 {
+  makeRoom(begin_, instances.count() + 1), makeRoom(next_, instances.count() + 1), makeRoom(boxes_, instances.count());
   begin_.assign(instances.count() + 1, 0);
   for (std::size_t k = 0; k < instances.count(); ++k) begin_[k + 1] = begin_[k] + instances.objects[k].point_count;
   next_.assign(begin_.begin(), begin_.end());

@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/tracking/instance_parting.h"
 
+#include "core/make_room.h"
+
 #include <algorithm>
 #include <cmath>
 #include <stdexcept>
@@ -67,6 +69,7 @@ bool InstanceParting::begin(const Observations& observations, const std::vector<
     for (; s < shares.size() && shares[s].observation == i; ++s) is_wanted = true;
     begin_.push_back(begin_.back() + (is_wanted ? observations.list[i].point_count : 0));
   }
+  makeRoom(filled_, begin_.size()), makeRoom(points_, begin_.back());
   filled_ = begin_;
   points_.resize(begin_.back());
   return !points_.empty();

@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/tracking/point_tracker.h"
 
+#include "core/make_room.h"
+
 #include <utility>
 
 namespace lidar_panoptic_clustering
@@ -52,6 +54,7 @@ bool PointTracker::part(const std::vector<Tracker::Share>& parts)
 {
   if (parts.empty()) return false;
   const auto count = static_cast<std::uint32_t>(seen_->list.size());
+  makeRoom(first_part_, count);
   first_part_.assign(count, kNone);
   for (std::uint32_t k = 0; k < parts.size(); ++k)
     if (first_part_[parts[k].observation] == kNone) first_part_[parts[k].observation] = k;

@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/tracking/sparse_assignment.h"
 
+#include "core/make_room.h"
+
 #include <algorithm>
 
 namespace lidar_panoptic_clustering
@@ -7,6 +9,8 @@ namespace lidar_panoptic_clustering
 void SparseAssignment::reset(std::size_t columns)
 {
   pairs_.clear(), begin_.clear(), alone_.clear();
+  makeRoom(potential_, columns), makeRoom(row_of_, columns), makeRoom(reached_in_, columns);
+  makeRoom(settled_in_, columns), makeRoom(reached_from_, columns), makeRoom(distance_, columns);
   potential_.assign(columns, 0.0);
   row_of_.assign(columns, kNone);
   reached_in_.assign(columns, 0), settled_in_.assign(columns, 0);
@@ -29,6 +33,7 @@ const std::vector<std::uint32_t>& SparseAssignment::solve()
 {
   const auto rows = static_cast<std::uint32_t>(alone_.size());
   begin_.push_back(static_cast<std::uint32_t>(pairs_.size()));
+  makeRoom(column_of_, rows);
   column_of_.assign(rows, kNone);
   for (std::uint32_t row = 0; row < rows; ++row) augment(row, search(row));
   return column_of_;

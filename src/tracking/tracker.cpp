@@ -1,5 +1,6 @@
 #include "lidar_panoptic_clustering/tracking/tracker.h"
 
+#include "core/make_room.h"
 #include "lidar_panoptic_clustering/core/parameters.h"
 
 #include <algorithm>
@@ -145,7 +146,9 @@ void Tracker::assign(const Observations& observations)
     for (std::uint32_t c = candidates_begin_[i]; c < candidates_begin_[i + 1]; ++c)
       if (candidates_[c].cost < kDearest) assignment_.addPair(candidates_[c].track, weight * candidates_[c].cost);
   }
+  makeRoom(track_of_, observations.list.size());
   track_of_ = assignment_.solve();
+  makeRoom(observed_in_, tracks_.size());
   observed_in_.assign(tracks_.size(), kNone);
   for (std::uint32_t i = 0; i < track_of_.size(); ++i)
     if (track_of_[i] != kNone) observed_in_[track_of_[i]] = i;

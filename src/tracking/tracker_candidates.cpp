@@ -1,5 +1,7 @@
 #include "lidar_panoptic_clustering/tracking/tracker.h"
 
+#include "core/make_room.h"
+
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -78,6 +80,7 @@ void Tracker::enterIntoGrid()
 void Tracker::findCandidates(const Observations& observations)
 {
   candidates_.clear(), candidates_begin_.clear();
+  makeRoom(looked_at_, tracks_.size());
   looked_at_.assign(tracks_.size(), 0);
   for (std::uint32_t i = 0; i < observations.list.size(); ++i)
   {
