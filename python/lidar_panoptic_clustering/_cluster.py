@@ -1,16 +1,15 @@
 """Runs the parts of a data set on the workers of a Dask cluster: in any order, each at least once, counted once."""
 
-import asyncio
 import itertools
 import queue
 import statistics
 import time
 import uuid
-from concurrent.futures import CancelledError, Future
 from typing import Any, Callable, Dict, Iterator, List, NamedTuple, Optional, Tuple
 
 from ._connect import POLL_S, import_problem
 from ._progress import Progress
+from ._results import NO_PART, SCHEDULER_GONE, Results, holders
 from ._tasks import Part, VersionMismatch, Work, describe_part, halves, run_part
 
 AHEAD = 3  # tasks a worker's thread has waiting, so that it never waits for the driver
@@ -18,8 +17,6 @@ LEAST_AHEAD = 12  # and what all have together, so that tasks go out by several
 COPIES = 3  # times a part is begun before it is given up
 LEAST_PATIENCE_S = 60.0
 WORKERS_EVERY_S = 2.0
-FETCH_S = 2.0  # after which results are fetched worker by worker
-NO_PART = -1  # in place of a part's order
 
 
 class Outcome(NamedTuple):
@@ -41,13 +38,6 @@ class _Flight:
         self.futures: Dict[str, Any] = {}
         self.begun = 0
         self.since = time.monotonic()
-
-
-class _Fetch:
-    """Results on their way, of the parts of these orders."""
-
-    def __init__(self, futures: Dict[int, Any], response: "Future[Dict[str, Any]]") -> None:
-        self.futures, self.response, self.since = futures, response, time.monotonic()
 
 
 class Run:
@@ -79,10 +69,8 @@ class Run:
         self._patience_s, self._take, self._skip, self._name_of = patience_s, take, skip, name_of
         self._id = uuid.uuid4().hex[:8]
         self._flights: Dict[int, _Flight] = {}
-        self._finished: Dict[int, Any] = {}  # futures whose results are to be fetched, by the part's order
-        self._from_all: Optional[_Fetch] = None
-        self._from_worker: Dict[str, _Fetch] = {}
         self._ended: "queue.Queue[Tuple[int, str]]" = queue.Queue()
+        self._results = Results(client, lambda order, key: self._ended.put((order, key)))
         self._again: List[Part] = []
         self._suspects: List[Part] = []  # of one scan: it, or what was on the same worker, ended the worker
         self._order = 0
@@ -106,8 +94,7 @@ class Run:
                 if self._failure is not None and all(f.order > self._failure[0] for f in self._flights.values()):
                     break
         finally:
-            for fetch in [*self._from_worker.values(), *([self._from_all] if self._from_all else [])]:
-                fetch.response.cancel()
+            self._results.cancel()
             self._cancel([future for flight in self._flights.values() for future in flight.futures.values()])
             self._flights.clear()
         order, reason = self._failure or (0, None)
@@ -117,7 +104,7 @@ class Run:
         if futures and self._client.status == "running":
             try:
                 self._client.cancel(futures, force=True)
-            except (OSError, asyncio.CancelledError, CancelledError):
+            except SCHEDULER_GONE:
                 pass  # the scheduler is gone, and they with it
 
     def _look_at_workers(self) -> None:
@@ -136,7 +123,7 @@ class Run:
         """By worker; none where the scheduler is gone."""
         try:
             return dict(self._client.nthreads()) if self._client.status == "running" else {}
-        except (OSError, asyncio.CancelledError, CancelledError):
+        except SCHEDULER_GONE:
             return {}
 
     def _begin_parts(self, parts: Iterator[Part]) -> None:
@@ -187,84 +174,24 @@ class Run:
             if flight is None or future is None:
                 continue  # a copy of a part that is done
             if future.status == "finished":
-                self._finished[order] = future
+                self._results.add(order, future)
             elif future.status == "error":
                 self._judge(flight, key, future, progress)
             else:
                 self._fail(NO_PART, f"the scheduler is gone, or gave up a task ({future.status}: {key})")
-        self._fetch_results(progress)
+        self._finish(progress)
 
-    def _fetch(self, futures: Dict[int, Any]) -> "_Fetch":
-        # not Client.gather(), which makes one of several, and cancels all with one
-        response = self._client.scheduler.gather(keys=[future.key for future in futures.values()])
-        fetch = _Fetch(futures, asyncio.run_coroutine_threadsafe(response, self._client.loop.asyncio_loop))
-        fetch.response.add_done_callback(lambda _: self._ended.put((NO_PART, "")))  # wakes the driver
-        return fetch
-
-    def _fetch_results(self, progress: Progress) -> None:
-        """Has results fetched, several at a time, and counted, without waiting for any.
-
-        A worker may end a part and then answer no more. What does not come is fetched worker by worker, and from one
-        that owes an answer nothing else is asked; its parts become late, and are begun elsewhere.
-        """
-        for worker, fetch in list(self._from_worker.items()):
-            if fetch.response.done():
-                del self._from_worker[worker]
-                self._finish(fetch, progress)
-        if self._from_all is not None:
-            if self._from_all.response.done():
-                self._finish(self._from_all, progress)
-            elif time.monotonic() - self._from_all.since < FETCH_S:
-                return
-            else:
-                self._from_all.response.cancel()
-                for worker, futures in self._by_worker(self._from_all.futures).items():
-                    if worker in self._from_worker:
-                        self._finished.update(futures)
-                    else:
-                        self._from_worker[worker] = self._fetch(futures)
-            self._from_all = None
-        finished, self._finished = self._finished, {}
-        futures = {}
-        for order, future in finished.items():
-            if order not in self._flights:
-                continue  # a copy was done first
-            if future.status == "finished":
-                futures[order] = future
-            elif future.status == "error":
-                self._ended.put((order, future.key))
-            else:
-                self._finished[order] = future  # its worker ended with the result, and the task was begun anew
-        if self._from_worker:
-            for worker, owed in self._by_worker(futures).items():
-                self._finished.update(owed if worker in self._from_worker else {})
-            futures = {order: future for order, future in futures.items() if order not in self._finished}
-        if futures:
-            self._from_all = self._fetch(futures)
-
-    def _by_worker(self, futures: Dict[int, Any]) -> Dict[str, Dict[int, Any]]:
-        """Finished parts by the worker that has the result."""
-        by_worker: Dict[str, Dict[int, Any]] = {}
-        if futures and self._client.status == "running":
-            holders = self._client.who_has(list(futures.values()))
-            for order, future in futures.items():
-                by_worker.setdefault(next(iter(holders.get(future.key, ())), ""), {})[order] = future
-        return by_worker
-
-    def _finish(self, fetch: "_Fetch", progress: Progress) -> None:
+    def _finish(self, progress: Progress) -> None:
+        """Counts the results that came."""
         try:
-            response = fetch.response.result()
-        except (OSError, asyncio.CancelledError, CancelledError) as error:
+            fetched = self._results.fetched(lambda order: order in self._flights)
+        except SCHEDULER_GONE as error:
             self._fail(NO_PART, f"the scheduler is gone ({type(error).__name__} {error})")
             return
-        if response["status"] != "OK":  # a worker ended before it handed its results over
-            self._finished.update(fetch.futures)
-            return
-        for order, future in fetch.futures.items():
+        for order, result in fetched:
             flight = self._flights.get(order)
             if flight is None:
                 continue
-            result = response["data"][future.key]
             self._durations = self._durations[-99:] + [time.monotonic() - flight.since]
             self._drop(flight)
             for scan, reason in result["skipped"]:
@@ -318,15 +245,17 @@ class Run:
         late = [flight for flight in self._flights.values() if now - flight.since > patience]
         if not late or self._client.status != "running":
             return
-        holding = {key: worker for worker, keys in self._client.processing().items() for key in keys}
-        ended = {key: future for flight in late for key, future in flight.futures.items() if key not in holding}
-        for key, has in self._client.who_has(list(ended.values())).items() if ended else ():
-            holding.update({key: has[0]} if has else {})  # it ended the part, and does not hand the result over
+        try:
+            holding = {key: worker for worker, keys in self._client.processing().items() for key in keys}
+            # a worker may have ended it, and not hand the result over
+            holding.update(holders(self._client, [future for flight in late for future in flight.futures.values()]))
+        except SCHEDULER_GONE:
+            return
         workers = set(self._threads())
         for flight in late:
-            holders = {holding[key] for key in flight.futures if key in holding}
+            silent = {holding[key] for key in flight.futures if key in holding}
             flight.since = now
-            if not holders or not workers - holders:
+            if not silent or not workers - silent:
                 continue  # it waits for its turn, or there is nobody else
             if flight.begun >= COPIES:
                 reason = f"{describe_part(flight.part)}: {COPIES} workers did not end it, {patience:.0f} s each"
@@ -334,10 +263,10 @@ class Run:
                 self._divide(flight, reason, progress)
                 continue
             progress.note(
-                f"{describe_part(flight.part)}: begun on another worker, {', '.join(sorted(holders))} has not ended it "
+                f"{describe_part(flight.part)}: begun on another worker, {', '.join(sorted(silent))} has not ended it "
                 f"after {patience:.0f} s"
             )
-            self._submit([flight], sorted(workers - holders))
+            self._submit([flight], sorted(workers - silent))
 
     def _patience(self) -> float:
         if self._patience_s is not None:
