@@ -1,5 +1,6 @@
 // Once it has seen scans of the kind, the way of a scan allocates nothing, the output included where it comes from a
 // pool.
+#include "allocation_count.h"
 #include "scan_fixture.h"
 #include "unordered_clouds.h"
 
@@ -11,55 +12,11 @@
 
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <cstddef>
 #include <cstring>
 #include <numeric>
 #include <string>
 #include <vector>
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
-#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 0
-#else
-#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 1
-#endif
-
-namespace
-{
-std::atomic<std::size_t> allocations{0};
-}
-
-#if LIDAR_PANOPTIC_COUNTS_ALLOCATIONS
-// Every way to memory from here and from the libraries: operator new and Eigen's allocator end in these.
-extern "C"
-{
-  void* __libc_malloc(std::size_t size);
-  void* __libc_calloc(std::size_t count, std::size_t size);
-  void* __libc_realloc(void* block, std::size_t size);
-  void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-  void* malloc(std::size_t size)
-  {
-    ++allocations;
-    return __libc_malloc(size);
-  }
-  void* calloc(std::size_t count, std::size_t size)
-  {
-    ++allocations;
-    return __libc_calloc(count, size);
-  }
-  void* realloc(void* block, std::size_t size)
-  {
-    ++allocations;
-    return __libc_realloc(block, size);
-  }
-  void* aligned_alloc(std::size_t alignment, std::size_t size)
-  {
-    ++allocations;
-    return __libc_memalign(alignment, size);
-  }
-}
-#endif
 
 namespace lidar_panoptic_clustering
 {

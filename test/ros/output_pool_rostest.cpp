@@ -1,63 +1,13 @@
 // What a nodelet allocates for a scan in a living graph, once it has seen scans of the kind.
+#include "allocation_count.h"
 #include "graph_fixture.h"
 #include "labelled_scene.h"
 
 #include <pcl_ros/point_cloud.h>
 
-#include <atomic>
 #include <cstddef>
 #include <deque>
 #include <iostream>
-
-#if defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__) || !defined(__GLIBC__)
-#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 0
-#else
-#define LIDAR_PANOPTIC_COUNTS_ALLOCATIONS 1
-#endif
-
-namespace
-{
-constexpr std::size_t kLarge = 65536;  // bytes; ROS's own messages and queues are far smaller
-std::atomic<std::size_t> all_blocks{0}, large_blocks{0};
-
-[[maybe_unused]] void count(std::size_t size)
-{
-  ++all_blocks;
-  if (size >= kLarge) ++large_blocks;
-}
-}  // namespace
-
-#if LIDAR_PANOPTIC_COUNTS_ALLOCATIONS
-// Every way to memory from here and from the libraries: operator new and Eigen's allocator end in these.
-extern "C"
-{
-  void* __libc_malloc(std::size_t size);
-  void* __libc_calloc(std::size_t count, std::size_t size);
-  void* __libc_realloc(void* block, std::size_t size);
-  void* __libc_memalign(std::size_t alignment, std::size_t size);
-
-  void* malloc(std::size_t size)
-  {
-    count(size);
-    return __libc_malloc(size);
-  }
-  void* calloc(std::size_t number, std::size_t size)
-  {
-    count(number * size);
-    return __libc_calloc(number, size);
-  }
-  void* realloc(void* block, std::size_t size)
-  {
-    count(size);
-    return __libc_realloc(block, size);
-  }
-  void* aligned_alloc(std::size_t alignment, std::size_t size)
-  {
-    count(size);
-    return __libc_memalign(alignment, size);
-  }
-}
-#endif
 
 namespace lidar_panoptic_clustering
 {
@@ -95,9 +45,9 @@ protected:
   {
     ASSERT_TRUE(send(8, held));
     constexpr int kScans = 20;
-    const std::size_t all_before = all_blocks, large_before = large_blocks;
+    const std::size_t all_before = allocations, large_before = large_allocations;
     ASSERT_TRUE(send(kScans, held));
-    const std::size_t all = all_blocks - all_before, large = large_blocks - large_before;
+    const std::size_t all = allocations - all_before, large = large_allocations - large_before;
     EXPECT_EQ(large, 0U) << "with " << held << " outputs held by a reader";
     std::cout << GetParam() << ", " << held << " outputs held: " << large << " blocks of 64 KB and more for " << kScans
               << " scans, " << all / kScans << " of any size a scan\n";
@@ -106,9 +56,9 @@ protected:
   void SetUp() override
   {
     if (LIDAR_PANOPTIC_COUNTS_ALLOCATIONS == 0) GTEST_SKIP() << "allocations cannot be counted in this build";
-    const std::size_t before = large_blocks;
-    const std::vector<char> counted(kLarge);
-    ASSERT_EQ(large_blocks, before + 1) << "the counter does not count " << counted.size();
+    const std::size_t before = large_allocations;
+    const std::vector<char> counted(kLargeBlock);
+    ASSERT_EQ(large_allocations, before + 1) << "the counter does not count " << counted.size();
     const std::string name = load(clusterNodelet(GetParam()));
     input_ = advertise<LabelledCloud>(name + "/input");
     output_ = std::make_unique<Probe<PanopticCloud>>(name + "/output");
