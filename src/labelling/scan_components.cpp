@@ -161,7 +161,7 @@ void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std
   const std::uint32_t part = part_of_[pixel], size = rows_ * columns_;
   const std::uint32_t step = highest_first ? columns_ : 0U - columns_;
   const auto isInside = [size](std::uint32_t at) { return at < size; };  // above row 0 it wraps to beyond the last
-  bool is_first = true, is_through = false;
+  bool is_first = true, is_through = false, is_face = true;
   for (std::uint32_t over = pixel, under = pixel, rows = 0;;)
   {
     do under += step, ++rows;
@@ -176,18 +176,20 @@ void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std
       return;
     }
     if (rows > kRowReach) return;
-    const bool is_foot = std::abs(beyond) <= kUnder && returns[under].height > kFoot;
+    const bool is_as_far = std::abs(beyond) <= kUnder, is_above = returns[under].height > kFoot;
     if (is_first)
     {
       c.undercut += beyond > kUnder ? 1U : 0U;
-      c.blocked += is_foot ? 1U : 0U;
+      c.blocked += is_as_far && is_above ? 1U : 0U;
     }
-    is_first = false, is_through |= beyond > kUnder;
+    is_first = false, is_through |= beyond > kUnder, is_face &= beyond <= kUnder;
     if (beyond > kUnder) continue;
-    if (!is_foot) return;
+    // down to the ground, which comes nearer from beam to beam by far more than it falls
+    is_face = is_face && returns[over].height - returns[under].height > -beyond;
+    if (!is_as_far || !(is_above || is_face)) return;
     part_of_[under] = part;
     feet_.push_back(under);
-    over = under, rows = 0;
+    over = under, rows = 0, is_face = true;
   }
 }
 
