@@ -27,9 +27,10 @@ inline Ties tiesOf(const FourPoints& a, const FourPoints& b, float squared_step,
   const FourFloats squared = squaredNorms(a.x - b.x, a.y - b.y, a.z - b.z);
   constexpr float kSlant = 4.0F;  // the squared cosine of 60 degrees, inverted; |a x b| / |a| is across the beam
   const FourFloats across = squaredNorms(a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x);
-  const FourInts is_surface = squared * squaredNorms(a.x, a.y, a.z) < kSlant * across;
-  const FourInts tight = (squared < squared_step) | is_surface;
-  return {bitsOf(tight), bitsOf((squared < squared_link) & ~tight)};
+  const FourFloats range = squaredNorms(a.x, a.y, a.z), seen = squared * range;
+  const FourInts is_surface = seen < kSlant * across;
+  const FourInts tight = (squared < squared_step) | (is_surface & (seen - across < squared_step * range));
+  return {bitsOf(tight), bitsOf(((squared < squared_link) | is_surface) & ~tight)};
 }
 }  // namespace
 
