@@ -66,6 +66,36 @@ TEST(LabelerKinds, APersonAMeterBeforeAWallIsAnObjectAndTheWallIsNot)
   EXPECT_GT(scan.of(4).structure, 0.9);
 }
 
+/// On a bicycle seen from the side: the rider, found first, makes no stall of it.
+TEST(LabelerKinds, ABicycleUnderItsRiderIsAnObject)
+{
+  std::vector<SceneBox> boxes = {
+      {{8.95F, -0.85F, 0.15F}, {9.05F, -0.2F, 0.65F}}, {{8.95F, 0.2F, 0.15F}, {9.05F, 0.85F, 0.65F}},
+      {{8.95F, -0.5F, 0.55F}, {9.05F, 0.6F, 0.85F}},   {{8.95F, -0.6F, 0.0F}, {9.05F, -0.45F, 0.15F}},
+      {{8.95F, 0.45F, 0.0F}, {9.05F, 0.6F, 0.15F}}};
+  for (SceneBox box : personAt(9.0F, -0.1F))
+  {
+    box.low.z() = std::max(box.low.z(), 0.2F);  // feet are on pedals
+    boxes.push_back(box);
+  }
+  for (const RaySensor& sensor : {RaySensor{}, sparse()})
+  {
+    const Labelled scan(sceneOf(boxes), sensor);
+    for (const int part : {0, 1, 2, 7}) EXPECT_GT(scan.of(part).object, 0.8) << part;
+  }
+}
+
+/// Down to the ground, and the ground before it is none of it.
+TEST(LabelerKinds, ALowWallIsStructureDownToItsFoot)
+{
+  for (const float distance : {5.0F, 8.0F, 12.0F})
+  {
+    const Labelled scan(sceneOf({{{distance, -8.0F, 0.0F}, {distance + 0.3F, 8.0F, 0.6F}}}));
+    EXPECT_LT(scan.of(0).ground, 0.01) << distance;
+    EXPECT_GT(scan.of(kGroundHit).ground, 0.995) << distance;
+  }
+}
+
 /// Frame and wheels, which touch the ground in a narrow place, a metre before the fence.
 TEST(LabelerKinds, ABicycleBeforeAFenceIsAnObject)
 {

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <limits>
 #include <map>
@@ -78,9 +79,11 @@ private:
     const auto vector = [&](std::uint32_t at) { return scan_.cloud.points[at].getVector3fMap().cast<double>().eval(); };
     const auto a = vector(i), b = vector(k);
     const double distance = (a - b).norm(), across = a.cross(b).norm() / b.norm();
-    const bool is_tight = distance < double{kDistances.step} || distance < 2.0 * across;
+    const bool is_surface = distance < 2.0 * across;
+    const double along = std::sqrt(std::max(0.0, distance * distance - across * across));
+    const bool is_tight = distance < double{kDistances.step} || (is_surface && along < double{kDistances.step});
     if (is_tight) part_[rootOf(part_, i)] = rootOf(part_, k);
-    if (is_tight || distance < double{kDistances.link}) component_[rootOf(component_, i)] = rootOf(component_, k);
+    if (is_tight || is_surface || distance < double{kDistances.link}) component_[rootOf(component_, i)] = rootOf(component_, k);
     return true;
   }
 
