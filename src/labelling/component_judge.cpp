@@ -131,7 +131,7 @@ bool ComponentJudge::isBehind(const ScanComponent& c, const Appearance& a) const
 
 bool ComponentJudge::isVehicle(const ScanComponent& c) const
 {
-  constexpr float kSmooth = 0.32F;  // sheet metal with windows
+  constexpr float kSmooth = 0.32F;                          // sheet metal with windows
   constexpr float kRiderLength = 2.2F, kRiderWidth = 1.1F;  // [m] a motorcycle's or a cargo bicycle's, with elbows
   const Appearance a(c);
   if (!a.maybe_tall && a.size.length < kRiderLength && a.size.width < kRiderWidth) return true;

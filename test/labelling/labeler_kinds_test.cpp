@@ -69,10 +69,11 @@ TEST(LabelerKinds, APersonAMeterBeforeAWallIsAnObjectAndTheWallIsNot)
 /// On a bicycle seen from the side: the rider, found first, makes no stall of it.
 TEST(LabelerKinds, ABicycleUnderItsRiderIsAnObject)
 {
-  std::vector<SceneBox> boxes = {
-      {{8.95F, -0.85F, 0.15F}, {9.05F, -0.2F, 0.65F}}, {{8.95F, 0.2F, 0.15F}, {9.05F, 0.85F, 0.65F}},
-      {{8.95F, -0.5F, 0.55F}, {9.05F, 0.6F, 0.85F}},   {{8.95F, -0.6F, 0.0F}, {9.05F, -0.45F, 0.15F}},
-      {{8.95F, 0.45F, 0.0F}, {9.05F, 0.6F, 0.15F}}};
+  std::vector<SceneBox> boxes = {{{8.95F, -0.85F, 0.15F}, {9.05F, -0.2F, 0.65F}},
+                                 {{8.95F, 0.2F, 0.15F}, {9.05F, 0.85F, 0.65F}},
+                                 {{8.95F, -0.5F, 0.55F}, {9.05F, 0.6F, 0.85F}},
+                                 {{8.95F, -0.6F, 0.0F}, {9.05F, -0.45F, 0.15F}},
+                                 {{8.95F, 0.45F, 0.0F}, {9.05F, 0.6F, 0.15F}}};
   for (SceneBox box : personAt(9.0F, -0.1F))
   {
     box.low.z() = std::max(box.low.z(), 0.2F);  // feet are on pedals

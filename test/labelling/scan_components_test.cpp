@@ -83,7 +83,8 @@ private:
     const double along = std::sqrt(std::max(0.0, distance * distance - across * across));
     const bool is_tight = distance < double{kDistances.step} || (is_surface && along < double{kDistances.step});
     if (is_tight) part_[rootOf(part_, i)] = rootOf(part_, k);
-    if (is_tight || is_surface || distance < double{kDistances.link}) component_[rootOf(component_, i)] = rootOf(component_, k);
+    if (is_tight || is_surface || distance < double{kDistances.link})
+      component_[rootOf(component_, i)] = rootOf(component_, k);
     return true;
   }
 

@@ -41,7 +41,8 @@ StructureBias structureBiasFromName(const std::string& name);
 ///
 /// In a structure a part is a person that has a person's size and height, is not rough, does not hang over beams that
 /// came by underneath, and stands free on both sides: beyond its outline the beams go farther. The same makes a
-/// structure of what is around a person and has nothing of a vehicle: a stall, a bench.
+/// structure of what is around a person and has nothing of a vehicle: a stall, a bench. What is no larger than a
+/// two-wheeler with its rider is none: there is no room for both.
 class ComponentJudge
 {
 public:

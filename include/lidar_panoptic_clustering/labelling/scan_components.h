@@ -45,8 +45,9 @@ struct ScanComponent
 /// A return's neighbours are the next such returns beside it and above it, up to 8 columns and 4 rows away (a window, a
 /// missing return). Two neighbours hang together when they are closer than a distance, or when the surface through them
 /// is within 60 degrees of upright to the beam, as far out, where neighbouring beams part. What hangs together at the
-/// step is a part; parts that hang together at the link are a component. So a person before a wall is a part, though
-/// not a component.
+/// step is a part, and such a surface counts only as long as it does not step along the beam by more than that: beams
+/// apart, a counter behind a person's side looks like one slanted surface with it. Parts that hang together at the link
+/// are a component. So a person before a wall is a part, though not a component.
 ///
 /// Linear in the pixels; keeps its memory.
 class ScanComponents
@@ -79,7 +80,8 @@ public:
   const std::vector<std::uint32_t>& pixels() const { return pixels_; }
   /// The pixels of returns below where parts begin that are the feet of what stands there: below a part and as far
   /// away, one after the other, or beneath a gap of up to 4 rows through which beams went on, as between a fence's
-  /// rails and the low wall that these stand on.
+  /// rails and the low wall that these stand on. Close to the ground only while they fall by more than they come
+  /// nearer, as faces do and the ground does not.
   const std::vector<std::uint32_t>& feet() const { return feet_; }
   /// The part of a pixel, kNone for those without.
   std::uint32_t partOf(std::size_t pixel) const { return part_of_[pixel]; }
