@@ -209,6 +209,7 @@ void select(const LabelledCloud& cloud, const ClassTable& table, const Selection
 {
   const auto max_squared_range = static_cast<float>(config.max_range_m * config.max_range_m);
   const auto keys = linkKeys(table, classPolicyFromName(config.class_policy), scan.link_count);
+  constexpr std::size_t kAhead = 64;  // 2 KB: the processor's own guesses end with the page
   LabelLookUp of(table);
   Batch batch;
   std::size_t k = 0;
@@ -223,6 +224,7 @@ void select(const LabelledCloud& cloud, const ClassTable& table, const Selection
         const LabelledPoint& p = cloud.points[k];
         if (of.look(p.label) && of.kind == ClassKind::kIgnored && of.class_index == kUnknownClass)
           noteUnknown(scan.unknown_labels, p.label);
+        __builtin_prefetch(cloud.points.data() + k + kAhead);
         copy(k, of.rgb);
         if (of.kind != ClassKind::kThing || !isReturn(p, max_squared_range)) continue;
         batch.points[batch.count] = {p.x, p.y, p.z, column};

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <limits>
+#include <numeric>
 
 namespace lidar_panoptic_clustering
 {
@@ -16,12 +17,13 @@ bool isReturn(const ScanPoint& p)
   return static_cast<bool>((zero == 0.0F) & ((p.x != 0.0F) | (p.y != 0.0F) | (p.z != 0.0F)));
 }
 
-void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
+/// Returns whether the lists are those of a frame of rows of the same size: each a point a pixel.
+bool resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
 {
   const std::size_t size = std::size_t{raw.width} * raw.height;
-  // a point a pixel: as the frame before left it where that had as many points and was of rows too
   const bool has_lists = out.organized_input && out.image.begin.size() == size + 1;
   const bool rows_are_rings = orientation == Orientation::kRowsAreRings;
+  const std::uint32_t width = out.image.cloud.width;
   out.points.resize(size);
   out.labels.resize(size);
   Projection& image = out.image;
@@ -35,6 +37,35 @@ void resize(const RawCloud& raw, Orientation orientation, OrganizedScan& out)
   image.points.resize(size);
   image.begin.resize(size + 1);
   for (std::size_t i = 0; i <= size && !has_lists; ++i) image.begin[i] = static_cast<std::uint32_t>(i);
+  return has_lists && image.cloud.width == width;
+}
+
+/// What the pixel shows; returns whether that is a return.
+bool paintPixel(const ScanPoint& from, std::uint32_t label, LabelledPoint& to)
+{
+  const bool is_return = isReturn(from);
+  to.x = is_return ? from.x : kNaN;
+  to.y = is_return ? from.y : kNaN;
+  to.z = is_return ? from.z : kNaN;
+  to.data[3] = 1.0F;
+  to.intensity = from.remission;
+  to.label = label;
+  return is_return;
+}
+
+/// Gives a row of `count` pixels the points that were sent in this order. `has_lists`: whether rows of as many pixels
+/// have lists; then the row's are right when those at its ends are.
+void paintRow(OrganizedScan& out, std::uint32_t pixel, std::uint32_t point, std::uint32_t count, bool has_lists)
+{
+  Projection& image = out.image;
+  const ScanPoint* const from = out.points.data() + point;
+  LabelledPoint* const to = image.cloud.points.data() + pixel;
+  std::uint32_t* const owner = image.owner_of_pixel.data() + pixel;
+  for (std::uint32_t i = 0; i < count; ++i)
+    owner[i] = paintPixel(from[i], out.labels[point + i], to[i]) ? point + i : Projection::kNone;
+  if (has_lists && image.points[pixel] == point && image.points[pixel + count - 1] == point + count - 1) return;
+  std::iota(image.pixel_of_point.begin() + point, image.pixel_of_point.begin() + point + count, pixel);
+  std::iota(image.points.begin() + pixel, image.points.begin() + pixel + count, point);
 }
 
 /// Gives `count` neighbouring pixels their points, which lie `step` apart as sent and are fetched before they are read.
@@ -48,15 +79,7 @@ void paint(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t
     __builtin_prefetch(&out.points[next]);
     __builtin_prefetch(&out.labels[next]);
     __builtin_prefetch(&image.pixel_of_point[next], 1);
-    const ScanPoint& from = out.points[point];
-    const bool is_return = isReturn(from);
-    LabelledPoint& to = image.cloud.points[pixel];
-    to.x = is_return ? from.x : kNaN;
-    to.y = is_return ? from.y : kNaN;
-    to.z = is_return ? from.z : kNaN;
-    to.data[3] = 1.0F;
-    to.intensity = from.remission;
-    to.label = out.labels[point];
+    const bool is_return = paintPixel(out.points[point], out.labels[point], image.cloud.points[pixel]);
     image.pixel_of_point[point] = static_cast<std::uint32_t>(pixel);
     image.points[pixel] = static_cast<std::uint32_t>(point);
     image.owner_of_pixel[pixel] = is_return ? static_cast<std::uint32_t>(point) : Projection::kNone;
@@ -66,7 +89,7 @@ void paint(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t
 
 void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement& placement, OrganizedScan& out)
 {
-  resize(raw, placement.orientation, out);
+  const bool has_lists = resize(raw, placement.orientation, out);
   out.organized_input = true;
   const std::size_t width = raw.width, height = raw.height;
   const bool rows_are_rings = placement.orientation == Orientation::kRowsAreRings;
@@ -78,7 +101,9 @@ void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement
   for (std::size_t row = 0; row < height; ++row)
   {
     readScan(raw, fields, row, 0, width, &out.points[row * width], &out.labels[row * width]);
-    if (rows_are_rings) paint(out, lineBegin(row), row * width, 1, width);
+    if (rows_are_rings)
+      paintRow(out, static_cast<std::uint32_t>(lineBegin(row)), static_cast<std::uint32_t>(row * width), raw.width,
+               has_lists);
   }
   for (std::size_t ring = 0; ring < width && !rows_are_rings; ++ring) paint(out, lineBegin(ring), ring, width, height);
 }

@@ -19,12 +19,24 @@ constexpr std::size_t kEnoughReturns = 256;
 /// at this angle a hundredth of the returns are in the row beside their own, and columns hide two. [rad]
 constexpr double kMostTilt = 0.22;
 
-void readPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
+/// The points and, where `ring_of_point` is asked for, their field `ring`: both of a piece while it is in the cache.
+void readPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out,
+                std::vector<std::uint32_t>* ring_of_point = nullptr)
 {
-  out.points.resize(std::size_t{raw.width} * raw.height);
+  constexpr std::size_t kPiece = 512;
+  const std::size_t width = raw.width;
+  out.points.resize(width * raw.height);
   out.labels.resize(out.points.size());
-  for (std::size_t row = 0; row < raw.height && raw.width > 0; ++row)
-    readScan(raw, fields, row, 0, raw.width, &out.points[row * raw.width], &out.labels[row * raw.width]);
+  if (ring_of_point != nullptr) ring_of_point->resize(out.points.size());
+  for (std::size_t row = 0; row < raw.height; ++row)
+    for (std::size_t begin = 0; begin < width; begin += kPiece)
+    {
+      const std::size_t count = std::min(kPiece, width - begin), first = row * width + begin;
+      readScan(raw, fields, row, begin, count, &out.points[first], &out.labels[first]);
+      if (ring_of_point == nullptr) continue;
+      readIds({raw.point(row, begin), raw.point_step, count}, *fields.ring, &(*ring_of_point)[first],
+              sizeof(std::uint32_t));
+    }
 }
 
 LineOrder sequenceOf(const RingOrder& order)
@@ -38,8 +50,10 @@ LineOrder sequenceOf(const RingOrder& order)
 void Organizer::followPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
 {
   FoundLayout& found = decision_.found;
-  if (found.layout == Layout::kRing) readRings(raw, fields, found);
-  readPoints(raw, fields, out);
+  if (found.layout == Layout::kRing)
+    readRings(raw, fields, found, out);
+  else
+    readPoints(raw, fields, out);
   std::uint32_t rows = 0;
   std::optional<Sweep> sweep = found.sweep;
   if (found.layout == Layout::kRing)
@@ -61,16 +75,16 @@ Organizer::Decision Organizer::decideRings(const RawCloud& raw, const ScanFields
   Decision decision;
   FoundLayout& found = decision.found;
   found.layout = out.layout = Layout::kRing;
-  readPoints(raw, fields, out);
   std::uint32_t lines = sensor_rows_;
   if (fields.ring == nullptr)
   {
     if (isOneRow(raw)) throwNoRing(raw);
+    readPoints(raw, fields, out);
     const Grid grid = gridOf(raw, fields, out, decision);
     found.rings_are_rows = true;
     lines = (grid.orientation == Orientation::kRowsAreRings) != grid.reshaped ? raw.height : raw.width;
   }
-  readRings(raw, fields, found);
+  readRings(raw, fields, found, out);
   place(rows_.byRing(out.points, ring_of_point_, lines), decision, out);
   found.line_order = sequenceOf(rows_.order());
   return decision;
@@ -173,20 +187,18 @@ double Organizer::hiddenShare(double most, const OrganizedScan& out) const
   return static_cast<double>(hidden) / returns;
 }
 
-void Organizer::readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found)
+/// The points and the ring of each.
+void Organizer::readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found, OrganizedScan& out)
 {
-  ring_of_point_.resize(std::size_t{raw.width} * raw.height);
-  if (found.rings_are_rows)
+  if (!found.rings_are_rows)
   {
-    const std::uint32_t width = found.reshaped ? raw.height : raw.width;
-    const bool rows_are_rings = found.orientation == Orientation::kRowsAreRings;
-    for (std::uint32_t i = 0; i < ring_of_point_.size(); ++i)
-      ring_of_point_[i] = rows_are_rings ? i / width : i % width;
-    return;
+    if (fields.ring == nullptr) throwNoRing(raw);
+    return readPoints(raw, fields, out, &ring_of_point_);
   }
-  if (fields.ring == nullptr) throwNoRing(raw);
-  for (std::size_t row = 0; row < raw.height && raw.width > 0; ++row)
-    readIds({raw.point(row, 0), raw.point_step, raw.width}, *fields.ring, &ring_of_point_[row * raw.width],
-            sizeof(std::uint32_t));
+  readPoints(raw, fields, out);
+  ring_of_point_.resize(out.points.size());
+  const std::uint32_t width = found.reshaped ? raw.height : raw.width;
+  const bool rows_are_rings = found.orientation == Orientation::kRowsAreRings;
+  for (std::uint32_t i = 0; i < ring_of_point_.size(); ++i) ring_of_point_[i] = rows_are_rings ? i / width : i % width;
 }
 }  // namespace lidar_panoptic_clustering
