@@ -20,7 +20,8 @@ struct YamlSource
 YamlSource readYamlSource(const std::string& kind, const std::map<std::string, std::string>& shipped,
                           const std::string& name_or_path);
 
-/// Throws std::invalid_argument, naming `source`, where it is not YAML or nested deeper than any file of ours.
+/// Throws std::invalid_argument, naming `source`, where it is not YAML in UTF-8 or nested deeper than any file of ours.
+/// Comes to an end with any text.
 YAML::Node parseYaml(const std::string& yaml, const std::string& source);
 
 /// Each reads a node by its text alone, by the same rules for every version of yaml-cpp and without the locale; false

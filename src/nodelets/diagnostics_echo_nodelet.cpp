@@ -1,6 +1,7 @@
 #include "reporting/diagnostics_echo.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <nodelet/nodelet.h>
@@ -46,6 +47,7 @@ public:
 private:
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
     auto& nh = getPrivateNodeHandle();
     EchoConfig config;
     try

@@ -5,6 +5,7 @@
 #include "lidar_panoptic_clustering/evaluation/temporal_quality.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 #include "ros/stamp_matcher.h"
 
@@ -82,6 +83,7 @@ private:
 
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
     auto& nh = getPrivateNodeHandle();
     try
     {

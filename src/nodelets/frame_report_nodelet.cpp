@@ -8,6 +8,7 @@
 #include "reporting/tracked_pictures.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -95,6 +96,7 @@ private:
 
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
     try
     {
       load();

@@ -5,6 +5,7 @@
 #include "reporting/stage_message.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <diagnostic_msgs/DiagnosticArray.h>
@@ -92,6 +93,8 @@ private:
 
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
+    openQueue(getMTPrivateNodeHandle());
     try
     {
       warnOfUnusedParameters(getPrivateNodeHandle(), namesOf(describeParameters(config_)));

@@ -2,6 +2,7 @@
 #include "lidar_panoptic_clustering/simulation/lidar_simulator.h"
 #include "ros/linking.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <geometry_msgs/TransformStamped.h>
@@ -81,6 +82,7 @@ class LidarSimulatorNodelet : public nodelet::Nodelet
 private:
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
     auto& nh = getPrivateNodeHandle();
     try
     {

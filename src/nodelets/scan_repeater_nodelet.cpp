@@ -2,6 +2,7 @@
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <nodelet/nodelet.h>
@@ -52,6 +53,7 @@ private:
 
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
     auto& nh = getPrivateNodeHandle();
     try
     {

@@ -4,6 +4,7 @@
 #include "lidar_panoptic_clustering/datasets/semantic_kitti.h"
 #include "ros/linking.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 #include "ros/pose_message.h"
 
@@ -87,6 +88,7 @@ class SemanticKittiPlayerNodelet : public nodelet::Nodelet
 private:
   void onInit() override
   {
+    openQueue(getPrivateNodeHandle());
     try
     {
       load();

@@ -4,6 +4,7 @@
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
 #include "ros/object_list.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -14,6 +15,7 @@ namespace lidar_panoptic_clustering
 {
 void ClusterNodelet::onInit()
 {
+  openQueue(getPrivateNodeHandle());
   try
   {
     load();
@@ -35,7 +37,7 @@ void ClusterNodelet::onInit()
       },
       [this](const CloudPtr& cloud) { mailbox_.put(cloud); });
   advertise();
-  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  // who listens already need not wait for the manager to tell of it
   connect();
 }
 

@@ -2,6 +2,7 @@
 
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <stdexcept>
@@ -33,6 +34,7 @@ OrganizerNodelet::~OrganizerNodelet()
 
 void OrganizerNodelet::onInit()
 {
+  openQueue(getPrivateNodeHandle());
   auto& nh = getPrivateNodeHandle();
   try
   {
@@ -52,7 +54,7 @@ void OrganizerNodelet::onInit()
   latched_.start(
       nh, [this] { return isPublished(); }, [this](const CloudPtr& cloud) { repeat(cloud); });
   advertise();
-  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  // who listens already need not wait for the manager to tell of it
   connect();
 }
 

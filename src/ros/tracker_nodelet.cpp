@@ -4,6 +4,7 @@
 #include "ros/cloud_subscription.h"
 #include "ros/load_failure.h"
 #include "ros/object_list.h"
+#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -45,6 +46,7 @@ TrackerNodelet::~TrackerNodelet()
 
 void TrackerNodelet::onInit()
 {
+  openQueue(getPrivateNodeHandle());
   try
   {
     load();
@@ -66,7 +68,7 @@ void TrackerNodelet::onInit()
       },
       [this](const CloudPtr& cloud) { receive(cloud); });
   advertise();
-  // nodelet 1.10.0 drops the callbacks that come during onInit(): who listens already is not told of otherwise
+  // who listens already need not wait for the manager to tell of it
   connect();
 }
 

@@ -174,6 +174,24 @@ TEST(ClassTable, NestingHasAnEnd)
   EXPECT_EQ(errorOf("# " + std::string(200, '-') + "\nclasses: []"), "my.yaml: the list 'classes' is empty");
 }
 
+/// yaml-cpp 0.6 reads each of these for ever.
+TEST(ClassTable, ColonBeforeABracketOrTheEndIsRead)
+{
+  for (const std::string yaml : {"cla sses: [{name: car, kind: thing, ids: [10, 10], color:", "{a:", "[a: b:", "[:",
+                                 "[a:\4", "{? a:", "- [x:", "[a\n#:\n:", "classes: [a: b:]", "[::]]"})
+    EXPECT_EQ(errorOf(yaml).substr(0, 24), "my.yaml: not a YAML file") << yaml;
+  for (const std::string yaml : {"[a:]", "[:]", "[,:]", "[a: ]", "[? a:]", "{classes: 1, a: [b:]}", "classes:", "a:"})
+    EXPECT_EQ(errorOf(yaml), "my.yaml: expected a map with a list 'classes'") << yaml;
+  EXPECT_EQ(errorOf("# [a:]\nclasses: []"), "my.yaml: the list 'classes' is empty");
+}
+
+TEST(ClassTable, OtherEncodingsThanUtf8AreRefused)
+{
+  std::string wide = "\xFF\xFE";
+  for (const char c : std::string("classes: [a:]")) wide += {c, '\0'};
+  EXPECT_EQ(errorOf(wide), "my.yaml: holds a byte of 0, expected a text in UTF-8");
+}
+
 TEST(ClassTable, WhatIsNoTableIsSaidSo)
 {
   for (const char* yaml : {"", "classes", "[1, 2]", "classes: 5", "names: []", "classes: {car: 1}"})

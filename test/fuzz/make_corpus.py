@@ -25,6 +25,11 @@ OVERFLOW = ((37.5851898, -1.14850283, -.859377325), (38.5070076, -2.75324106, .5
             (36.3110695, -1.19178283, .0212875716))
 TABLE = 'classes: [{name: car, kind: thing, ids: [%s], color: [0, 0, 0], size: [%s], link: %s}]\n'
 SENSOR = 'elevations_deg: [2, 1.5, -3]\ncolumns: %s\nmax_range_m: %s\nhorizontal_fov_deg: 90\n'
+# what yaml-cpp 0.6 reads for ever
+COLONS = {'colon_at_end': 'classes: [{name: car, kind: thing, ids: [10, 10], color:',
+          'colon_before_bracket': 'elevations_deg: [2, 1.5:]\ncolumns: 1024\n',
+          'colon_before_byte_4': 'elevations_deg: [2, 1.5:\4',
+          'colon_alone': 'classes: [:]\n'}
 
 
 def scan(algorithm, rows, choice, near, points):
@@ -79,6 +84,9 @@ def corpus():
     yield 'class_table', 'nested', 'classes: ' + '[' * 5000
     yield 'class_table', 'itself', 'classes: &a [*a]\n'
     yield 'class_table', 'bomb', 'a: &a [x, x, x]\nb: &b [*a, *a, *a]\nc: &c [*b, *b, *b]\nclasses: [*c, *c]\n'
+    for name, text in COLONS.items():
+        yield 'class_table', name, text
+        yield 'sensor_model', name, text
     yield 'sensor_model', 'ordinary', SENSOR % (1024, 120)
     yield 'sensor_model', 'negative', SENSOR % (-1, -1)
     yield 'sensor_model', 'endless', SENSOR % (1024, '.inf')
