@@ -131,7 +131,10 @@ TEST_F(TrackerPartsTest, ACarThatCameIntoSightInTwoPartsHasTheOlderAndLargerOnes
     const auto objects = track(0.1 * k);
     if (k == 0) id = objects.at(1).track;
     EXPECT_EQ(objects.at(1).track, id) << k;
-    if (k == 8) EXPECT_EQ(tracker_.isAlive(id + 1), false) << "the fragment's track";
+    if (k == 8)
+    {
+      EXPECT_FALSE(tracker_.isAlive(id + 1)) << "the fragment's track";
+    }
   }
 }
 
