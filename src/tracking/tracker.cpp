@@ -183,8 +183,10 @@ void Tracker::tellMotion(Track& track)
 
 void Tracker::follow(Track& track, const Expected& expected, const Observation& seen, const Eigen::Vector3d& origin)
 {
-  constexpr float kForget = 0.3F;  // of what was there and is not seen
+  constexpr float kForget = 0.3F;       // of what was there and is not seen
+  constexpr float kKeepPoints = 0.85F;  // a scan; half of them are forgotten in as long as a pole or a person hides
   track.points = static_cast<float>(seen.point_count);
+  track.most_points = std::max(track.points, kKeepPoints * track.most_points);
   track.motion = expected.motion;
   track.motion.correct(displacementOf(expected.outline, seen.extent), noiseOf(seen));
   tellMotion(track);
@@ -225,7 +227,7 @@ std::uint32_t Tracker::bear(std::int64_t stamp_us, const Observation& observatio
   track.object.track = next_id_++;
   track.object.first_seen_us = track.object.last_seen_us = stamp_us;
   track.object.scans = 1;
-  track.points = static_cast<float>(observation.point_count);
+  track.points = track.most_points = static_cast<float>(observation.point_count);
   track.prior_class = observation.class_index;
   const double x = origin.x() + static_cast<double>(observation.x), y = origin.y() + static_cast<double>(observation.y);
   track.motion = MotionState::at(x, y, noiseOf(observation), prior_[observation.class_index]);

@@ -127,9 +127,9 @@ double Tracker::penaltyOf(const Observation& observation, std::uint32_t track) c
   constexpr double kPointsSigma = 0.8;  // of the logarithm of their ratio: a factor of 2.2
   constexpr double kFewPoints = 5.0;    // ratios of less are chance
   const TrackedObject& object = tracks_[track].object;
-  const double points =
-      std::log((observation.point_count + kFewPoints) / (static_cast<double>(tracks_[track].points) + kFewPoints)) /
-      kPointsSigma;
+  const double last = tracks_[track].points, most = tracks_[track].most_points;
+  const double usual = std::clamp<double>(observation.point_count, last, most);
+  const double points = std::log((observation.point_count + kFewPoints) / (usual + kFewPoints)) / kPointsSigma;
   double penalty = std::min(points * points, kMostPoints);
   penalty += kMissed * 1e-6 * static_cast<double>(last_us_ - object.last_seen_us) + kYoung / object.scans;
   const ClassInfo &ours = (*table_)[object.class_index], &theirs = (*table_)[observation.class_index];

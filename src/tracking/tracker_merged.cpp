@@ -21,25 +21,14 @@ float leastOverlap(const Extent& a, const Extent& b)
   }
   return least;
 }
-
-/// The share of an outline that lies within what was seen, along the axis where that is least; below 0 outside.
-float heldShare(const Extent& outline, const Extent& seen)
-{
-  float least = 1.0F;
-  for (std::size_t k = 0; k < Extent::kAxes; ++k)
-  {
-    const float shared = std::min(outline.max[k], seen.max[k]) - std::max(outline.min[k], seen.min[k]);
-    least = std::min(least, shared / std::max(outline.max[k] - outline.min[k], 0.05F));
-  }
-  return least;
-}
 }  // namespace
 
 /// Lists the tracks that should be within an observation or reach into it, the ones seen in nothing else first.
 void Tracker::findHeld(const Observations& observations, std::uint32_t i)
 {
   constexpr std::uint32_t kFewest = 3;                                // scans that make a track more than a fragment
-  constexpr float kOwnLeast = 0.2F, kLeast = 0.3F, kReach = 0.15F;    // share of the outline
+  constexpr float kOwnLeast = 0.2F, kReach = 0.15F;                   // share of the outline
+  constexpr float kFragment = 0.5F;                                   // of the points it had
   constexpr float kOwn = 3.0F, kSeenNowhere = 1.0F, kSeenToo = 1.0F;  // in rank
   held_.clear();
   const auto& group = (*table_)[observations.list[i].class_index].group;
@@ -48,13 +37,15 @@ void Tracker::findHeld(const Observations& observations, std::uint32_t i)
     const std::uint32_t track = candidates_[c].track, in = observed_in_[track];
     if (tracks_[track].object.scans < kFewest || (*table_)[tracks_[track].object.class_index].group != group) continue;
     const Extent& outline = expected_[track].outline;
-    const float held = heldShare(outline, observations.list[i].extent);
+    const float held = outline.shareWithin(observations.list[i].extent);
     if (in == i && held > kOwnLeast) held_.push_back({kOwn, track, false});
     if (in == i || held < kReach) continue;
-    if (in == kNone)
-      held_.push_back({kSeenNowhere + held, track, held < kLeast});
-    else if (heldShare(outline, observations.list[in].extent) <= 0.0F)  // it was given what is none of its own
-      held_.push_back({held, track, held < kLeast});
+    const bool is_elsewhere =
+        in != kNone && static_cast<float>(observations.list[in].point_count) >= kFragment * tracks_[track].points;
+    if (!is_elsewhere)  // nor is it where the scan has torn a fragment off
+      held_.push_back({kSeenNowhere + held, track, held < kHeld});
+    else if (outline.shareWithin(observations.list[in].extent) <= 0.0F)  // it was given what is none of its own
+      held_.push_back({held, track, held < kHeld});
     else  // torn: one part is an instance of its own, another one belongs to what stands beside
       held_.push_back({held - kSeenToo, track, true});
   }
@@ -63,25 +54,32 @@ void Tracker::findHeld(const Observations& observations, std::uint32_t i)
 }
 
 /// Gives a track its share of an observation, whose shares begin at `first`, where it lies beside all other tracks. Two
-/// that together are hardly larger than one object of their class are of one.
+/// that together are hardly larger than one object of their class are of one, but for people who were seen for long:
+/// those pass each other at arm's length and remain two.
 void Tracker::share(std::uint32_t i, const Held& held, std::size_t first)
 {
   constexpr float kSideBySide = 0.4F;  // tracks that overlap by more are of one object
   constexpr float kMayBeTwo = 0.7F;    // times the usual size
+  constexpr float kLongestM = 1.2F;    // length of a person
+  constexpr std::uint32_t kKnown = 6;  // scans that make a track more than a fragment that happens to stay
   const ClassInfo& info = (*table_)[tracks_[held.track].object.class_index];
   const Extent& outline = expected_[held.track].outline;
+  const bool is_person = info.length_m > 0.0F && info.length_m <= kLongestM;
+  const bool is_known = is_person && !held.must_be_sure && tracks_[held.track].object.scans >= kKnown;
   bool is_sure = info.length_m > 0.0F || !held.must_be_sure;
   for (std::size_t s = first; s < shares_.size(); ++s)
   {
     Extent together = shares_[s].outline;
-    if (leastOverlap(together, outline) >= kSideBySide) return;
+    const float overlap = leastOverlap(together, outline);
+    if (is_known && shares_[s].is_known && overlap < 1.0F) continue;
+    if (overlap >= kSideBySide) return;
     together.add(outline);
     if (info.length_m <= 0.0F) continue;
     if (together.fits(kMayBeTwo * info.length_m, kMayBeTwo * info.width_m)) return;
     is_sure = is_sure && !together.fits(kIsTwo * info.length_m, kIsTwo * info.width_m);
   }
   if (held.must_be_sure && (!is_sure || shares_.size() == first)) return;
-  shares_.push_back({i, outline, is_sure});
+  shares_.push_back({i, outline, is_sure, is_known});
 }
 
 void Tracker::shareOut(const Observations& observations, std::uint32_t i)

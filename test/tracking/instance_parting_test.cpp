@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <map>
 #include <set>
 #include <string>
@@ -113,6 +114,42 @@ TEST_F(InstancePartingTest, ThePartOfATornCarThatAScanJoinsToTheNextCarStaysItsO
     EXPECT_EQ(ids[2].size(), 1U);
     EXPECT_NE(ids[1], ids[2]);
   }
+}
+
+TEST_F(InstancePartingTest, TwoWhoWereSeenApartStayTwoWhileTheyPassEachOther)
+{
+  std::map<int, std::set<std::uint32_t>> ids;
+  for (int k = 0; k < 40; ++k)
+  {
+    begin(k);
+    const double x = 10.0 + 0.1 * (k - 20), apart = std::abs(x - 10.0);
+    add(1, 1, "person", 10.0, 0.0, 0.3, 0.5);
+    add(2, apart < 0.8 ? 1 : 2, "person", x, 0.5, 0.3, 0.4);  // shoulder to shoulder: no hole, hardly larger than one
+    for (const auto& [who, now] : track()) ids[who].insert(now.begin(), now.end());
+  }
+  EXPECT_EQ(ids[1].size(), 1U);
+  EXPECT_EQ(ids[2].size(), 1U);
+  EXPECT_NE(ids[1], ids[2]);
+}
+
+TEST_F(InstancePartingTest, CarsThatAScanMergesStayTwoThoughItTearsTheirOtherEndsOff)
+{
+  std::map<int, std::set<std::uint32_t>> ids;
+  for (int k = 0; k < 20; ++k)
+  {
+    begin(k);
+    const bool is_merged = k == 15;
+    for (int slice = 0; slice < 45; ++slice)
+    {
+      const double x = 10.0 + 0.1 * slice;
+      add(1, is_merged && slice < 20 ? 3 : 1, "car", x, 5.0, 0.05, 1.6);
+      add(2, !is_merged ? 2 : slice > 24 ? 4 : 1, "car", x + 5.2, 5.0, 0.05, 1.6);
+    }
+    for (const auto& [car, now] : track()) ids[car].insert(now.begin(), now.end());
+  }
+  EXPECT_EQ(ids[1].size(), 1U);
+  EXPECT_EQ(ids[2].size(), 1U);
+  EXPECT_NE(ids[1], ids[2]);
 }
 
 TEST_F(InstancePartingTest, OneWithPointsAllOverStaysOneHoweverLarge)

@@ -117,6 +117,49 @@ TEST_F(TrackerPartsTest, OneThatComesOutFromBehindAnotherWithManyTimesThePointsK
   }
 }
 
+TEST_F(TrackerPartsTest, ACarThatCameIntoSightInTwoPartsHasTheOlderAndLargerOnesId)
+{
+  std::uint32_t id = 0;
+  for (int k = 0; k < 40; ++k)
+  {
+    begin();
+    const double x = 10.0 + 1.0 * k;
+    if (k < 8) add(1, "car", x - 1.5, 3.0, 1.4, 1.7);
+    if (k >= 4 && k < 8) add(2, "car", x + 1.9, 3.0, 0.3, 0.1);  // beyond the outline: an id of its own
+    // now the whole car, now only the end that had the other id
+    if (k >= 8) add(1, "car", k % 2 == 0 ? x : x + 1.0, 3.0, k % 2 == 0 ? 4.5 : 2.5, 1.8);
+    const auto objects = track(0.1 * k);
+    if (k == 0) id = objects.at(1).track;
+    EXPECT_EQ(objects.at(1).track, id) << k;
+    if (k == 8)
+    {
+      EXPECT_FALSE(tracker_.isAlive(id + 1)) << "the fragment's track";
+    }
+  }
+}
+
+TEST_F(TrackerPartsTest, OneThatGoesBehindAPoleComesOutWithItsPointsAndItsId)
+{
+  std::uint32_t id = 0;
+  for (int k = 0; k < 35; ++k)
+  {
+    begin();
+    const double x = 10.0 + 0.8 * k;
+    if (k < 15)
+      car(1, x, 3.0);
+    else if (k == 15)
+      add(1, "car", x - 1.6, 3.0, 1.3, 1.5);
+    else if (k == 16)
+      add(1, "car", x - 2.2, 3.0, 0.05, 0.05);  // a corner, and then nothing
+    else if (k >= 26)
+      add(1, "car", x + 1.5, 3.0, 1.2, 1.8);  // its front, a second later
+    const auto objects = track(0.1 * k);
+    if (objects.empty()) continue;
+    if (k == 0) id = objects.at(1).track;
+    EXPECT_EQ(objects.at(1).track, id) << k;
+  }
+}
+
 TEST_F(TrackerPartsTest, PartsOfATornObjectHaveItsId)
 {
   std::uint32_t id = 0;

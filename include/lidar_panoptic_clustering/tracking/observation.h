@@ -45,6 +45,20 @@ struct Extent
     }
     return most;
   }
+  /// How much of it lies within another one, along the axis where that is least; below 0 outside.
+  float shareWithin(const Extent& other) const
+  {
+    constexpr float kThinnestM = 0.05F;
+    float least = 1.0F;
+    for (std::size_t k = 0; k < kAxes; ++k)
+    {
+      const float shared =
+          (max[k] < other.max[k] ? max[k] : other.max[k]) - (min[k] > other.min[k] ? min[k] : other.min[k]);
+      const float length = max[k] - min[k] > kThinnestM ? max[k] - min[k] : kThinnestM;
+      least = shared / length < least ? shared / length : least;
+    }
+    return least;
+  }
   /// Whether a rectangle along one of the axes, about all of it, is at most `length` x `width` [m].
   bool fits(float length, float width) const
   {

@@ -73,6 +73,7 @@ public:
     std::uint32_t observation;  ///< its place
     Extent outline;             ///< where the track should be, from Observations::origin
     bool is_sure;               ///< with any of the others it is larger than one object of the class
+    bool is_known = false;      ///< its track is of one person, seen for long enough to be no fragment
   };
   /// The tracks of observations that hold more than one: they lie within it, side by side, and nothing else is seen of
   /// them. By observation; valid until the next call. Teaches nothing.
@@ -92,15 +93,17 @@ public:
 private:
   static constexpr float kDearest = 14.0F;  ///< what a pair may cost, penalties included
   static constexpr float kIsTwo = 1.15F;    ///< times a class's usual size: larger than one object is
+  static constexpr float kHeld = 0.3F;      ///< of an outline: so much of a track that is held in an observation
 
   struct Track
   {
     TrackedObject object;
     MotionState motion;
-    Extent outline;          ///< from the position
-    float points = 0.0F;     ///< in the last scan it was seen in
-    ClassIndex prior_class;  ///< of its first scan, or what the vote says
-    bool has_ended = false;  ///< it turned out to be another track's object
+    Extent outline;            ///< from the position
+    float points = 0.0F;       ///< in the last scan it was seen in
+    float most_points = 0.0F;  ///< of late; what goes behind something comes out with as many
+    ClassIndex prior_class;    ///< of its first scan, or what the vote says
+    bool has_ended = false;    ///< it turned out to be another track's object
   };
   /// Where a track should be in the scan in hand.
   struct Expected
@@ -136,6 +139,8 @@ private:
   void join(const Observation& observation, std::uint32_t& own, std::uint32_t track);
   bool isPartOf(const Observation& observation, std::uint32_t track) const;
   bool isSameObject(const Observation& observation, std::uint32_t own, std::uint32_t track) const;
+  bool areOneCar(std::uint32_t own, std::uint32_t other, const Extent& seen) const;
+  void endDoubles(const Observations& observations, std::uint32_t i);
   bool isTorn(const Observation& observation, std::uint32_t own, std::uint32_t track) const;
   void learn(std::int64_t stamp_us, const Observations& observations);
   static void tellMotion(Track& track);
