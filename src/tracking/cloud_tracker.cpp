@@ -25,6 +25,20 @@ double secondsSince(std::int64_t then_us, std::int64_t now_us)
   return std::max(0.0, 1e-6 * static_cast<double>(now_us - then_us));
 }
 
+/// The first point from `i` on before which none is of an instance; eight at a time, as most points of a scan are of
+/// none and a branch a point is what reading them costs.
+std::uint32_t skipStuff(const PanopticPoint* points, std::uint32_t i, std::uint32_t end)
+{
+  constexpr std::uint32_t kStep = 8;
+  for (; i + kStep <= end; i += kStep)
+  {
+    std::uint32_t any = 0;
+    for (std::uint32_t k = 0; k < kStep; ++k) any |= points[i + k].instance;
+    if (any != 0) break;
+  }
+  return i;
+}
+
 /// The rectangle is the same from either end: the way its object drives tells which is the front.
 void pointAlong(const Eigen::Vector3d& velocity, InstanceBox& box)
 {
@@ -91,6 +105,8 @@ void CloudTracker::take(const PanopticPoint* points, std::uint32_t begin, std::u
 {
   for (std::uint32_t i = begin; i < end; ++i)
   {
+    if (points[i].instance == 0) i = skipStuff(points, i, end);
+    if (i == end) break;
     const PanopticPoint& point = points[i];
     if (point.instance == 0) continue;
     const ClassIndex class_index = table_->find(point.label);
