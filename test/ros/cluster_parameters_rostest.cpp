@@ -130,7 +130,7 @@ protected:
   }
 
 private:
-  LogProbe log_;  // one for all loads: /rosout is latched, a new one may begin with the load before
+  LogProbe log_;  // one for all loads: on Ubuntu 20.04 a new one hears of the load before once more
 };
 
 TEST_F(ClusterParameters, OfTheLaunchFileCountFromTheFirstScan)
