@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <limits>
-#include <numeric>
 
 namespace lidar_panoptic_clustering
 {
@@ -53,36 +52,31 @@ bool paintPixel(const ScanPoint& from, std::uint32_t label, LabelledPoint& to)
   return is_return;
 }
 
-/// Gives a row of `count` pixels the points that were sent in this order. `has_lists`: whether rows of as many pixels
-/// have lists; then the row's are right when those at its ends are.
-void paintRow(OrganizedScan& out, std::uint32_t pixel, std::uint32_t point, std::uint32_t count, bool has_lists)
-{
-  Projection& image = out.image;
-  const ScanPoint* const from = out.points.data() + point;
-  LabelledPoint* const to = image.cloud.points.data() + pixel;
-  std::uint32_t* const owner = image.owner_of_pixel.data() + pixel;
-  for (std::uint32_t i = 0; i < count; ++i)
-    owner[i] = paintPixel(from[i], out.labels[point + i], to[i]) ? point + i : Projection::kNone;
-  if (has_lists && image.points[pixel] == point && image.points[pixel + count - 1] == point + count - 1) return;
-  std::iota(image.pixel_of_point.begin() + point, image.pixel_of_point.begin() + point + count, pixel);
-  std::iota(image.points.begin() + pixel, image.points.begin() + pixel + count, point);
-}
-
-/// Gives `count` neighbouring pixels their points, which lie `step` apart as sent and are fetched before they are read.
-void paint(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t step, std::size_t count)
+/// Gives a row of `count` pixels its points, which lie `step` apart as sent; then they are fetched before they are
+/// read. `has_lists`: whether rows of as many pixels have lists; then the row's are right when those at its ends are.
+void paintRow(OrganizedScan& out, std::size_t pixel, std::size_t point, std::size_t step, std::size_t count,
+              bool has_lists)
 {
   constexpr std::size_t kAhead = 32;
   Projection& image = out.image;
-  for (std::size_t end = pixel + count; pixel < end; ++pixel, point += step)
+  std::size_t from = point;
+  for (std::size_t i = 0; i < count; ++i, from += step)
   {
-    const std::size_t next = std::min(point + kAhead * step, out.points.size() - 1);
-    __builtin_prefetch(&out.points[next]);
-    __builtin_prefetch(&out.labels[next]);
-    __builtin_prefetch(&image.pixel_of_point[next], 1);
-    const bool is_return = paintPixel(out.points[point], out.labels[point], image.cloud.points[pixel]);
-    image.pixel_of_point[point] = static_cast<std::uint32_t>(pixel);
-    image.points[pixel] = static_cast<std::uint32_t>(point);
-    image.owner_of_pixel[pixel] = is_return ? static_cast<std::uint32_t>(point) : Projection::kNone;
+    if (step > 1)
+    {
+      const std::size_t next = std::min(from + kAhead * step, out.points.size() - 1);
+      __builtin_prefetch(&out.points[next]);
+      __builtin_prefetch(&out.labels[next]);
+    }
+    const bool is_return = paintPixel(out.points[from], out.labels[from], image.cloud.points[pixel + i]);
+    image.owner_of_pixel[pixel + i] = is_return ? static_cast<std::uint32_t>(from) : Projection::kNone;
+  }
+  const std::size_t last = count - 1;
+  if (has_lists && image.points[pixel] == point && image.points[pixel + last] == point + last * step) return;
+  for (std::size_t i = 0; i < count; ++i)
+  {
+    image.points[pixel + i] = static_cast<std::uint32_t>(point + i * step);
+    image.pixel_of_point[point + i * step] = static_cast<std::uint32_t>(pixel + i);
   }
 }
 }  // namespace
@@ -94,17 +88,16 @@ void placeRows(const RawCloud& raw, const ScanFields& fields, const RowPlacement
   const std::size_t width = raw.width, height = raw.height;
   const bool rows_are_rings = placement.orientation == Orientation::kRowsAreRings;
   const auto& row_of_line = placement.row_of_line;
-  const auto lineBegin = [&](std::size_t line)
+  const auto rowBegin = [&](std::size_t line)
   { return (row_of_line.empty() ? line : row_of_line[line]) * out.image.cloud.width; };
 
-  if (width == 0) return;
+  if (width == 0 || height == 0) return;
   for (std::size_t row = 0; row < height; ++row)
   {
     readScan(raw, fields, row, 0, width, &out.points[row * width], &out.labels[row * width]);
-    if (rows_are_rings)
-      paintRow(out, static_cast<std::uint32_t>(lineBegin(row)), static_cast<std::uint32_t>(row * width), raw.width,
-               has_lists);
+    if (rows_are_rings) paintRow(out, rowBegin(row), row * width, 1, width, has_lists);
   }
-  for (std::size_t ring = 0; ring < width && !rows_are_rings; ++ring) paint(out, lineBegin(ring), ring, width, height);
+  for (std::size_t ring = 0; ring < width && !rows_are_rings; ++ring)
+    paintRow(out, rowBegin(ring), ring, width, height, has_lists);
 }
 }  // namespace lidar_panoptic_clustering

@@ -48,7 +48,8 @@ void DirectionProjector::project(ScanPoints scan, const std::vector<std::uint32_
 {
   const std::size_t pixels = std::size_t{rows} * columns;
   out.pixel_of_point.resize(scan.size());
-  out.owner_of_pixel.assign(pixels, Projection::kNone);
+  out.owner_of_pixel.resize(pixels);
+  owners_.assign(rows * (std::size_t{columns} + kGap), Projection::kNone);
   out.begin.assign(pixels + 1, 0);
   out.points.resize(scan.size());
   out.cloud.points.resize(pixels);
@@ -56,6 +57,7 @@ void DirectionProjector::project(ScanPoints scan, const std::vector<std::uint32_
   out.cloud.height = rows;
   out.cloud.is_dense = false;
   locate(scan, directions, columns, shift, out);
+  takeOwners(rows, columns, out);
   listPoints(out);
   paint(scan, labels, class_bits, out);
 }
@@ -67,7 +69,7 @@ inline void DirectionProjector::takePixel(ScanPoints scan, std::uint32_t point, 
   if (direction.azimuth == direction.azimuth)  // false for NaN
   {
     ++returns_;
-    std::uint32_t& owner = out.owner_of_pixel[out.pixel_of_point[point]];
+    std::uint32_t& owner = owners_[out.pixel_of_point[point] + std::size_t{direction.row} * kGap];
     if (owner == Projection::kNone || squaredRange(scan[point]) < squaredRange(scan[owner])) std::swap(owner, hidden);
   }
   if (hidden != Projection::kNone) hidden_.push_back(hidden);
@@ -101,10 +103,18 @@ void DirectionProjector::findPixels(const std::vector<PointDirection>& direction
       // azimuth -pi is the same direction as +pi, which is column 0
       const auto column = static_cast<std::uint32_t>(std::max(0.0F, (kPi - azimuth) * columns_per_radian + shift));
       pixel = row * columns + (column < columns ? column : 0);
-      __builtin_prefetch(&out.owner_of_pixel[pixel], 1);
+      __builtin_prefetch(&owners_[pixel + std::size_t{row} * kGap], 1);
     }
     out.pixel_of_point[i] = pixel;
   }
+}
+
+void DirectionProjector::takeOwners(std::uint32_t rows, std::uint32_t columns, Projection& out)
+{
+  const std::uint32_t* from = owners_.data();
+  std::uint32_t* to = out.owner_of_pixel.data();
+  for (std::uint32_t row = 0; row < rows; ++row, from += columns + kGap, to += columns)
+    std::copy(from, from + columns, to);
 }
 
 void DirectionProjector::listPoints(Projection& out)

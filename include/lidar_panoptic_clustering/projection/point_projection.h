@@ -110,11 +110,17 @@ public:
 private:
   void locate(ScanPoints scan, const std::vector<PointDirection>& directions, std::uint32_t columns, float shift,
               Projection& out);
-  static void findPixels(const std::vector<PointDirection>& directions, std::size_t begin, std::size_t end,
-                         std::uint32_t columns, float shift, Projection& out);
+  void findPixels(const std::vector<PointDirection>& directions, std::size_t begin, std::size_t end,
+                  std::uint32_t columns, float shift, Projection& out);
   void takePixel(ScanPoints scan, std::uint32_t point, PointDirection direction, Projection& out);
+  void takeOwners(std::uint32_t rows, std::uint32_t columns, Projection& out);
   void listPoints(Projection& out);
 
+  /// Between the rows of owners_, a line of the cache: where columns are a power of two, a firing's pixels would all
+  /// fall to the same place of it.
+  static constexpr std::uint32_t kGap = 16;
+
+  std::vector<std::uint32_t> owners_;  ///< as Projection::owner_of_pixel
   std::vector<std::uint32_t> hidden_;  ///< points that own no pixel
   std::vector<std::uint32_t> full_;    ///< the pixels these stand in
   std::size_t returns_ = 0, without_return_ = 0;
