@@ -83,8 +83,12 @@ Organizer::Decision Organizer::decideRings(const RawCloud& raw, const ScanFields
     const Grid grid = gridOf(raw, fields, out, decision);
     found.rings_are_rows = true;
     lines = (grid.orientation == Orientation::kRowsAreRings) != grid.reshaped ? raw.height : raw.width;
+    numberRings(raw, found);
   }
-  readRings(raw, fields, found, out);
+  else
+  {
+    readRings(raw, fields, found, out);
+  }
   place(rows_.byRing(out.points, ring_of_point_, lines), decision, out);
   found.line_order = sequenceOf(rows_.order());
   return decision;
@@ -190,13 +194,15 @@ double Organizer::hiddenShare(double most, const OrganizedScan& out) const
 /// The points and the ring of each.
 void Organizer::readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found, OrganizedScan& out)
 {
-  if (!found.rings_are_rows)
-  {
-    if (fields.ring == nullptr) throwNoRing(raw);
-    return readPoints(raw, fields, out, &ring_of_point_);
-  }
-  readPoints(raw, fields, out);
-  ring_of_point_.resize(out.points.size());
+  if (!found.rings_are_rows && fields.ring == nullptr) throwNoRing(raw);
+  readPoints(raw, fields, out, found.rings_are_rows ? nullptr : &ring_of_point_);
+  if (found.rings_are_rows) numberRings(raw, found);
+}
+
+/// The ring of each point where the cloud's rows or columns are the rings.
+void Organizer::numberRings(const RawCloud& raw, const FoundLayout& found)
+{
+  ring_of_point_.resize(std::size_t{raw.width} * raw.height);
   const std::uint32_t width = found.reshaped ? raw.height : raw.width;
   const bool rows_are_rings = found.orientation == Orientation::kRowsAreRings;
   for (std::uint32_t i = 0; i < ring_of_point_.size(); ++i) ring_of_point_[i] = rows_are_rings ? i / width : i % width;

@@ -111,6 +111,7 @@ private:
   void followRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void followPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void readRings(const RawCloud& raw, const ScanFields& fields, const FoundLayout& found, OrganizedScan& out);
+  void numberRings(const RawCloud& raw, const FoundLayout& found);
   void place(std::uint32_t rows, Decision& decision, OrganizedScan& out);
   void project(std::uint32_t rows, std::uint32_t columns, OrganizedScan& out);
   double mostHidden(const Decision& decision) const;
