@@ -151,6 +151,12 @@ bool ComponentJudge::mayHoldPerson(const ScanComponent& part) const
   return hasPersonsHeight(part) && !isPerson(part);
 }
 
+bool ComponentJudge::isPersonCutOff(const ScanComponent& part) const
+{
+  constexpr float kHalfChest = 0.12F;  // [m] of its depth is seen
+  return isPerson(part) && part.footprint.smallestRectangle().width > kHalfChest;
+}
+
 bool ComponentJudge::isPerson(const ScanComponent& c) const
 {
   constexpr float kMostRough = 0.6F;  // bags, arms and legs

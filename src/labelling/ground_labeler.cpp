@@ -109,12 +109,13 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
   const auto& components = components_.list();
   shown_of_component_.clear();
   for (const ScanComponent& c : components) shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
+  const std::size_t whole_count = parts.size();
   cutParts(cloud);
   shown_of_part_.assign(parts.size(), kIgnored);
   for (std::uint32_t part = 0; part < parts.size(); ++part)
   {
     const std::uint32_t component = components_.componentOfPart()[part];
-    if (!judge_.isPerson(parts[part])) continue;
+    if (part < whole_count ? !judge_.isPerson(parts[part]) : !judge_.isPersonCutOff(parts[part])) continue;
     shown_of_part_[part] = kObject;
     const bool is_most = 3 * parts[part].point_count > 2 * components[component].point_count;
     if (!is_most && !judge_.isVehicle(components[component])) shown_of_component_[component] = kStructure;

@@ -69,6 +69,7 @@ void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<Ground
     if (under < size && part_of_[under] == kNone) examineFoot(returns, pixel, highest_first_);
     for (; under < size && part_of_[under] == from; under += step) part_of_[under] = part;
   }
+  component_of_part_[part] = kNone - 1;
   parts_[part].point_count = static_cast<std::uint32_t>(cut_.size());
   for (std::size_t k = 0; k < cut_.size();)
   {
@@ -78,5 +79,6 @@ void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<Ground
     measurePiece(cloud, returns, first, length);
     k += length;
   }
+  component_of_part_[part] = component_of_part_[from];
 }
 }  // namespace lidar_panoptic_clustering

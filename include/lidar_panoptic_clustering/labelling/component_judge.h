@@ -59,6 +59,8 @@ public:
   bool isStructure(const ScanComponent& component) const;
   /// Whether a part of a component is a person.
   bool isPerson(const ScanComponent& part) const;
+  /// The same of columns that were cut from a part.
+  bool isPersonCutOff(const ScanComponent& part) const;
   /// Whether someone may be a piece of such a part: as high, as low and with as many returns, but no person as a whole.
   bool mayHoldPerson(const ScanComponent& part) const;
   /// Whether a component that a person was found in is an object nevertheless.
