@@ -59,7 +59,7 @@ void GroundLabeler::label(LabelledCloud& cloud)
     showGround(cloud, begin, end);
   }
   components_.finish(cloud, returns_);
-  judge();
+  judge(cloud);
   for (const std::uint32_t pixel : components_.pixels()) showPart(cloud, pixel);
   for (const std::uint32_t pixel : components_.feet()) showPart(cloud, pixel);
 }
@@ -87,18 +87,35 @@ void GroundLabeler::showPart(LabelledCloud& cloud, std::uint32_t pixel)
   cloud.points[pixel].label = ids_[shown];
 }
 
+/// Someone may lean on what is no vehicle.
+void GroundLabeler::cutParts(const LabelledCloud& cloud)
+{
+  const auto& parts = components_.parts();
+  may_be_cut_.assign(parts.size(), 0);
+  for (std::uint32_t part = 0; part < parts.size(); ++part)
+  {
+    if (!judge_.mayHoldPerson(parts[part])) continue;
+    const std::uint32_t component = components_.componentOfPart()[part];
+    may_be_cut_[part] =
+        shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.list()[component]) ? 1 : 0;
+  }
+  components_.cutColumns(cloud, returns_, may_be_cut_);
+}
+
 /// A component's parts are what it is, but for people.
-void GroundLabeler::judge()
+void GroundLabeler::judge(const LabelledCloud& cloud)
 {
   const auto& parts = components_.parts();
   const auto& components = components_.list();
   shown_of_component_.clear();
   for (const ScanComponent& c : components) shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
+  const std::size_t whole_count = parts.size();
+  cutParts(cloud);
   shown_of_part_.assign(parts.size(), kIgnored);
   for (std::uint32_t part = 0; part < parts.size(); ++part)
   {
     const std::uint32_t component = components_.componentOfPart()[part];
-    if (!judge_.isPerson(parts[part])) continue;
+    if (part < whole_count ? !judge_.isPerson(parts[part]) : !judge_.isPersonCutOff(parts[part])) continue;
     shown_of_part_[part] = kObject;
     const bool is_most = 3 * parts[part].point_count > 2 * components[component].point_count;
     if (!is_most && !judge_.isVehicle(components[component])) shown_of_component_[component] = kStructure;

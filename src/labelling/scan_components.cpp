@@ -64,9 +64,9 @@ void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<Ground
   begin_of_run_.push_back(static_cast<std::uint32_t>(pixels_.size()));
   numberParts();
   joinParts();
-  const bool highest_first = isHighestFirst(cloud, returns);
-  examineTops(cloud, highest_first);
-  examineFeet(returns, highest_first);
+  highest_first_ = isHighestFirst(cloud, returns);
+  examineTops(cloud, highest_first_);
+  examineFeet(returns, highest_first_);
   measureNoise(returns);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run)
   {

@@ -94,7 +94,8 @@ public:
   const SlopedPlane& groundPlane() const { return surface_.plane(); }
 
 private:
-  void judge();
+  void judge(const LabelledCloud& cloud);
+  void cutParts(const LabelledCloud& cloud);
   void showGround(LabelledCloud& cloud, std::size_t begin, std::size_t end);
   void showPart(LabelledCloud& cloud, std::uint32_t pixel);
   unsigned char hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
@@ -107,6 +108,7 @@ private:
   PolarView view_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
+  std::vector<unsigned char> may_be_cut_;  ///< by part
   std::vector<unsigned char> shown_of_component_, shown_of_part_, shown_;  ///< places in ids_; the last by pixel
 };
 }  // namespace lidar_panoptic_clustering

@@ -3,6 +3,7 @@
 #include "lidar_panoptic_clustering/core/point_types.h"
 #include "lidar_panoptic_clustering/geometry/disjoint_sets.h"
 #include "lidar_panoptic_clustering/geometry/footprint.h"
+#include "lidar_panoptic_clustering/labelling/column_cuts.h"
 #include "lidar_panoptic_clustering/labelling/ground_surface.h"
 
 #include <algorithm>
@@ -68,6 +69,11 @@ public:
   void addRow(std::uint32_t row, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
   /// After the last row.
   void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
+  /// Then, of the parts marked in `may_be_cut` (not 0), columns in which someone may stand become parts of their own, at
+  /// the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as it was, and
+  /// so do components.
+  void cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                  const std::vector<unsigned char>& may_be_cut);
 
   /// Numbered by first pixel in row-major order.
   const std::vector<ScanComponent>& parts() const { return parts_; }
@@ -111,12 +117,15 @@ private:
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
                     std::uint32_t length);
+  void cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part);
+  bool isFreeAbove(const std::vector<GroundedReturn>& returns) const;
+  void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
                   std::int32_t direction);
 
   std::uint32_t rows_ = 0, columns_ = 0;
   Distances distances_{};
-  bool full_turn_ = false;
+  bool full_turn_ = false, highest_first_ = true;
   DisjointSets sets_;
   std::vector<std::uint32_t> part_of_;
   std::vector<std::uint32_t> pixels_;        ///< of the returns above the ground, in row-major order
@@ -130,6 +139,9 @@ private:
   std::vector<ScanComponent> parts_, components_;
   std::vector<std::uint32_t> component_of_part_;
   std::uint32_t component_count_ = 0;
+  ColumnProfile profile_;
+  std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of those that may be cut
+  std::vector<std::uint32_t> cut_;                   ///< pixels
   std::vector<float> bends_;  ///< of the ground, some of them [m]
   float bend_noise_ = 0.0F;   ///< [m]
 };
