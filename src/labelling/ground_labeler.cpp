@@ -58,7 +58,7 @@ void GroundLabeler::label(LabelledCloud& cloud)
     components_.addRow(row, cloud, returns_);
     showGround(cloud, begin, end);
   }
-  components_.finish(cloud, returns_);
+  components_.finish(cloud, returns_, [this](const HeightRange& part) { return judge_.mayHoldPerson(part); });
   judge(cloud);
   for (const std::uint32_t pixel : components_.pixels()) showPart(cloud, pixel);
   for (const std::uint32_t pixel : components_.feet()) showPart(cloud, pixel);
@@ -87,42 +87,42 @@ void GroundLabeler::showPart(LabelledCloud& cloud, std::uint32_t pixel)
   cloud.points[pixel].label = ids_[shown];
 }
 
-/// Someone may lean on what is no vehicle.
-void GroundLabeler::cutParts(const LabelledCloud& cloud)
-{
-  const auto& parts = components_.parts();
-  may_be_cut_.assign(parts.size(), 0);
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
-  {
-    if (!judge_.mayHoldPerson(parts[part])) continue;
-    const std::uint32_t component = components_.componentOfPart()[part];
-    may_be_cut_[part] =
-        shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.list()[component]) ? 1 : 0;
-  }
-  components_.cutColumns(cloud, returns_, may_be_cut_);
-}
-
 /// A component's parts are what it is, but for people.
 void GroundLabeler::judge(const LabelledCloud& cloud)
 {
-  const auto& parts = components_.parts();
-  const auto& components = components_.list();
   shown_of_component_.clear();
-  for (const ScanComponent& c : components) shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
-  const std::size_t whole_count = parts.size();
-  cutParts(cloud);
-  shown_of_part_.assign(parts.size(), kIgnored);
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
-  {
-    const std::uint32_t component = components_.componentOfPart()[part];
-    if (part < whole_count ? !judge_.isPerson(parts[part]) : !judge_.isPersonCutOff(parts[part])) continue;
-    shown_of_part_[part] = kObject;
-    const bool is_most = 3 * parts[part].point_count > 2 * components[component].point_count;
-    if (!is_most && !judge_.isVehicle(components[component])) shown_of_component_[component] = kStructure;
-  }
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
-    if (shown_of_part_[part] == kIgnored)
-      shown_of_part_[part] = shown_of_component_[components_.componentOfPart()[part]];
+  for (std::uint32_t i = 0; i < components_.componentCount(); ++i)
+    shown_of_component_.push_back(judge_.isStructure(components_.component(i)) ? kStructure : kObject);
+  const std::vector<std::uint32_t>&component_of = components_.componentOfPart(), &apart = components_.partsApart();
+  shown_of_part_.assign(components_.partCount(), kIgnored);
+  leant_on_.clear();
+  const std::size_t apart_count = apart.size();
+  for (const std::uint32_t part : apart)
+    if (judge_.isPerson(components_.part(part)))
+      showPerson(part);
+    else if (isNoVehicle(component_of[part]))
+      leant_on_.push_back(part);
+  components_.cutColumns(cloud, returns_, leant_on_);
+  shown_of_part_.resize(components_.partCount(), kIgnored);
+  for (std::size_t k = apart_count; k < apart.size(); ++k)
+    if (judge_.isPersonCutOff(components_.part(apart[k]))) showPerson(apart[k]);
+  for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
+    if (shown_of_part_[part] == kIgnored) shown_of_part_[part] = shown_of_component_[component_of[part]];
+}
+
+bool GroundLabeler::isNoVehicle(std::uint32_t component) const
+{
+  return shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.component(component));
+}
+
+/// What is around a person and no vehicle is structure.
+void GroundLabeler::showPerson(std::uint32_t part)
+{
+  shown_of_part_[part] = kObject;
+  const std::uint32_t component = components_.componentOfPart()[part];
+  const ScanComponent& around = components_.component(component);
+  const bool is_most = 3 * components_.part(part).point_count > 2 * around.point_count;
+  if (!is_most && !judge_.isVehicle(around)) shown_of_component_[component] = kStructure;
 }
 
 void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels)

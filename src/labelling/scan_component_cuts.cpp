@@ -1,28 +1,36 @@
 // How ScanComponents parts people from what they lean on.
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 
+#include <algorithm>
+
 namespace lidar_panoptic_clustering
 {
-void ScanComponents::cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                                const std::vector<unsigned char>& may_be_cut)
+namespace
 {
-  const auto part_count = static_cast<std::uint32_t>(parts_.size());
-  first_run_.assign(part_count, kNone);
+constexpr std::uint32_t kLastRun = ScanComponents::kNone - 1;
+}  // namespace
+
+void ScanComponents::cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                                const std::vector<std::uint32_t>& parts)
+{
+  if (parts.empty()) return;
+  first_run_.assign(partCount(), kNone);
+  for (const std::uint32_t part : parts) first_run_[part] = kLastRun;
   next_run_.resize(part_of_run_.size());
   for (auto run = static_cast<std::uint32_t>(part_of_run_.size()); run-- > 0;)
   {
-    const std::uint32_t part = part_of_run_[run];
-    if (may_be_cut[part] == 0) continue;
-    next_run_[run] = first_run_[part], first_run_[part] = run;
+    std::uint32_t& first = first_run_[part_of_run_[run]];
+    if (first == kNone) continue;
+    next_run_[run] = first;
+    first = run;
   }
-  for (std::uint32_t part = 0; part < part_count; ++part)
-    if (first_run_[part] != kNone) cutPart(cloud, returns, part);
+  for (const std::uint32_t part : parts) cutPart(cloud, returns, part);
 }
 
 void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part)
 {
   profile_.start(columns_, pixels_[begin_of_run_[first_run_[part]]] % columns_);
-  for (std::uint32_t run = first_run_[part]; run != kNone; run = next_run_[run])
+  for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
   {
     const std::uint32_t begin = begin_of_run_[run], row_begin = pixels_[begin] / columns_ * columns_;
     for (std::uint32_t k = begin; k < begin_of_run_[run + 1]; ++k)
@@ -31,7 +39,7 @@ void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<Groun
   for (const ColumnProfile::Columns& columns : profile_.find())
   {
     cut_.clear();
-    for (std::uint32_t run = first_run_[part]; run != kNone; run = next_run_[run])
+    for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
       for (std::uint32_t k = begin_of_run_[run]; k < begin_of_run_[run + 1]; ++k)
         if (columns.holds(pixels_[k] % columns_, columns_)) cut_.push_back(pixels_[k]);
     if (isFreeAbove(returns)) addCut(cloud, returns, part);
@@ -58,10 +66,17 @@ bool ScanComponents::isFreeAbove(const std::vector<GroundedReturn>& returns) con
 /// Makes a part of pixels of another one, with what of its feet lies below them.
 void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from)
 {
-  const auto part = static_cast<std::uint32_t>(parts_.size());
+  const auto part = partCount();
   const std::uint32_t step = highest_first_ ? columns_ : 0U - columns_, size = rows_ * columns_;
-  parts_.emplace_back();
+  HeightRange height;
+  height.point_count = static_cast<std::uint32_t>(cut_.size());
+  for (const std::uint32_t pixel : cut_)
+    height.bottom = std::min(height.bottom, returns[pixel].height),
+    height.top = std::max(height.top, returns[pixel].height);
+  heights_.push_back(height);
   component_of_part_.push_back(component_of_part_[from]);
+  description_of_part_.push_back(kNone);
+  describeApart(part);
   for (const std::uint32_t pixel : cut_) part_of_[pixel] = part;
   for (const std::uint32_t pixel : cut_)
   {
@@ -70,7 +85,6 @@ void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<Ground
     for (; under < size && part_of_[under] == from; under += step) part_of_[under] = part;
   }
   component_of_part_[part] = kNone - 1;
-  parts_[part].point_count = static_cast<std::uint32_t>(cut_.size());
   for (std::size_t k = 0; k < cut_.size();)
   {
     std::uint32_t length = 1;

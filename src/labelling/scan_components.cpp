@@ -6,8 +6,6 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-constexpr std::uint32_t kAhead = 6;  // runs
-
 /// Whether elevation falls with the row; told by a few thousand returns.
 bool isHighestFirst(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
 {
@@ -36,12 +34,16 @@ inline bool isRough(const LabelledPoint* last, const GroundedReturn* at, float n
 }
 }  // namespace
 
-void ScanComponent::add(const ScanComponent& other)
+void HeightRange::add(const HeightRange& other)
 {
   point_count += other.point_count;
   bottom = std::min(bottom, other.bottom), top = std::max(top, other.top);
-  footprint.add(other.footprint);
   open_top |= other.open_top;
+}
+
+void ScanComponent::addShape(const ScanComponent& other)
+{
+  footprint.add(other.footprint);
   blocked += other.blocked, undercut += other.undercut, hidden += other.hidden;
   triples += other.triples, rough_triples += other.rough_triples;
   ends += other.ends, free_ends += other.free_ends;
@@ -59,49 +61,74 @@ void ScanComponents::start(std::uint32_t rows, std::uint32_t columns, const Dist
   has_return_.assign(columns, 0);
 }
 
-void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns)
+void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                            const std::function<bool(const HeightRange&)>& is_apart)
 {
   begin_of_run_.push_back(static_cast<std::uint32_t>(pixels_.size()));
-  numberParts();
+  numberParts(returns);
   joinParts();
   highest_first_ = isHighestFirst(cloud, returns);
   examineTops(cloud, highest_first_);
+  setApart(is_apart);
   examineFeet(returns, highest_first_);
   measureNoise(returns);
-  for (std::uint32_t run = 0; run < part_of_run_.size(); ++run)
-  {
-    fetchPart(run + kAhead);
-    measureRun(cloud, returns, run);
-  }
-  components_.clear();
-  for (std::uint32_t part = 0; part < parts_.size(); ++part)
-    if (component_of_part_[part] == components_.size())  // numbered by first part
-      components_.push_back(parts_[part]);
-    else
-      components_[component_of_part_[part]].add(parts_[part]);
+  for (std::uint32_t run = 0; run < part_of_run_.size(); ++run) measureRun(cloud, returns, run);
+  for (const std::uint32_t part : parts_apart_)
+    described_[component_of_part_[part]].addShape(described_[description_of_part_[part]]);
 }
 
-void ScanComponents::numberParts()
+/// Numbers the parts and measures their heights.
+void ScanComponents::numberParts(const std::vector<GroundedReturn>& returns)
 {
   sets_.flatten(part_of_run_);
-  std::uint32_t part_count = 0;
+  heights_.clear();
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run)  // a set stands by its first run
   {
-    part_of_run_[run] = part_of_run_[run] == run ? part_count++ : part_of_run_[part_of_run_[run]];
+    const bool is_first = part_of_run_[run] == run;
+    const std::uint32_t part = is_first ? partCount() : part_of_run_[part_of_run_[run]];
+    if (is_first) heights_.emplace_back();
+    part_of_run_[run] = part;
+    HeightRange here;
+    here.point_count = begin_of_run_[run + 1] - begin_of_run_[run];
     for (std::uint32_t k = begin_of_run_[run]; k < begin_of_run_[run + 1]; ++k)
-      part_of_[pixels_[k]] = part_of_run_[run];
+    {
+      const float height = returns[pixels_[k]].height;
+      here.bottom = std::min(here.bottom, height), here.top = std::max(here.top, height);
+      part_of_[pixels_[k]] = part;
+    }
+    heights_[part].add(here);
   }
-  parts_.assign(part_count, {});
+}
+
+/// Begins the descriptions, with the heights.
+void ScanComponents::setApart(const std::function<bool(const HeightRange&)>& is_apart)
+{
+  described_.assign(component_count_, {});
+  description_of_part_ = component_of_part_;
+  parts_apart_.clear();
+  for (std::uint32_t part = 0; part < partCount(); ++part)
+  {
+    described_[component_of_part_[part]].HeightRange::add(heights_[part]);
+    if (is_apart(heights_[part])) describeApart(part);
+  }
+}
+
+void ScanComponents::describeApart(std::uint32_t part)
+{
+  description_of_part_[part] = static_cast<std::uint32_t>(described_.size());
+  parts_apart_.push_back(part);
+  described_.emplace_back();
+  described_.back().HeightRange::add(heights_[part]);
 }
 
 /// Numbers the components.
 void ScanComponents::joinParts()
 {
-  sets_.reset(parts_.size());
+  sets_.reset(heights_.size());
   for (const Pair& pair : loose_) sets_.unite(part_of_run_[pair.a], part_of_run_[pair.b]);
   component_count_ = 0;
-  component_of_part_.resize(parts_.size());
-  for (std::uint32_t part = 0; part < parts_.size(); ++part)
+  component_of_part_.resize(heights_.size());
+  for (std::uint32_t part = 0; part < partCount(); ++part)
   {
     const std::uint32_t root = sets_.find(part);  // the smallest member
     component_of_part_[part] = root == part ? component_count_++ : component_of_part_[root];
@@ -136,7 +163,7 @@ void ScanComponents::examineTops(const LabelledCloud& cloud, bool highest_first)
 {
   const std::uint32_t columns = cloud.width, begin = highest_first ? 0 : (cloud.height - 1) * columns;
   for (std::uint32_t pixel = begin; pixel < begin + columns && cloud.height > 0; ++pixel)
-    if (part_of_[pixel] != kNone && cloud.points[pixel].z > 0.0F) parts_[part_of_[pixel]].open_top = true;
+    if (part_of_[pixel] != kNone && cloud.points[pixel].z > 0.0F) heights_[part_of_[pixel]].open_top = true;
 }
 
 void ScanComponents::examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first)
@@ -168,7 +195,7 @@ void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std
     while (isInside(under) && !returns[under].isReturn());
     if (!isInside(under) || part_of_[under] == part) return;
     const float beyond = returns[under].range - returns[over].range;
-    ScanComponent& c = parts_[part];
+    ScanComponent& c = described_[description_of_part_[part]];
     if (const std::uint32_t other = part_of_[under]; other != kNone)
     {
       const bool is_before = component_of_part_[part] != component_of_part_[other] && beyond < -kUnder;
@@ -193,21 +220,12 @@ void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std
   }
 }
 
-/// Asks for a run's part, which is likely not in the cache.
-void ScanComponents::fetchPart(std::uint32_t run) const
-{
-  if (run >= part_of_run_.size()) return;
-  constexpr std::size_t kLine = 64;  // bytes
-  const char* const part = reinterpret_cast<const char*>(&parts_[part_of_run_[run]]);
-  for (std::size_t at = 0; at < sizeof(ScanComponent); at += kLine) __builtin_prefetch(part + at, 1);
-}
-
-/// Adds a run to its part: its size, how rough its surface is, and whether it goes on where the part ends.
+/// Adds a run to what its part is described by: its extent, how rough its surface is, and whether it goes on where the
+/// part ends.
 void ScanComponents::measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
                                 std::uint32_t run)
 {
   const std::uint32_t begin = begin_of_run_[run], end = begin_of_run_[run + 1];
-  parts_[part_of_run_[run]].point_count += end - begin;
   for (std::uint32_t k = begin; k < end;)
   {
     const std::uint32_t first = pixels_[k];
@@ -224,16 +242,10 @@ void ScanComponents::measurePiece(const LabelledCloud& cloud, const std::vector<
 {
   const std::uint32_t part = part_of_[first], component = component_of_part_[part], end = first + length;
   const std::uint32_t row_begin = first / cloud.width * cloud.width, row_end = row_begin + cloud.width;
-  ScanComponent& c = parts_[part];
+  ScanComponent& c = described_[description_of_part_[part]];
   const LabelledPoint* const points = cloud.points.data();
   const GroundedReturn* const at = returns.data();
-  float bottom = c.bottom, top = c.top;
-  for (std::uint32_t pixel = first; pixel < end; ++pixel)
-  {
-    bottom = std::min(bottom, at[pixel].height), top = std::max(top, at[pixel].height);
-    c.footprint.add(points[pixel].x, points[pixel].y);
-  }
-  c.bottom = bottom, c.top = top;
+  for (std::uint32_t pixel = first; pixel < end; ++pixel) c.footprint.add(points[pixel].x, points[pixel].y);
 
   if (first == row_begin || part_of_[first - 1] != part) examineEnd(cloud, returns, first, -1);
   if (end == row_end || part_of_[end] != part) examineEnd(cloud, returns, end - 1, 1);
@@ -255,7 +267,7 @@ void ScanComponents::examineEnd(const LabelledCloud& cloud, const std::vector<Gr
   constexpr float kBehind = 0.3F;    // [m]
   constexpr std::int32_t kNext = 3;  // columns in which what comes next is looked for
   const std::uint32_t part = part_of_[pixel];
-  ScanComponent& c = parts_[part];
+  ScanComponent& c = described_[description_of_part_[part]];
   const auto column = static_cast<std::int32_t>(pixel % cloud.width), columns = static_cast<std::int32_t>(cloud.width);
   bool is_next = true;  // but for empty columns
   for (std::int32_t k = 1; k <= kNext; ++k)

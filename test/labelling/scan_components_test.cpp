@@ -4,10 +4,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <map>
 #include <random>
 #include <string>
+#include <tuple>
 #include <vector>
 
 namespace lidar_panoptic_clustering
@@ -92,6 +94,83 @@ private:
   std::vector<std::uint32_t> part_, component_;
 };
 
+bool isNever(const HeightRange&)
+{
+  return false;
+}
+
+ScanComponents componentsOf(const RandomScan& scan, const std::function<bool(const HeightRange&)>& is_apart)
+{
+  ScanComponents found;
+  found.start(scan.cloud.height, scan.cloud.width, kDistances, true);
+  for (std::uint32_t row = 0; row < scan.cloud.height; ++row) found.addRow(row, scan.cloud, scan.returns);
+  found.finish(scan.cloud, scan.returns, is_apart);
+  return found;
+}
+
+void expectSame(const ScanComponent& a, const ScanComponent& b)
+{
+  EXPECT_EQ(std::make_tuple(a.point_count, a.bottom, a.top, a.open_top),
+            std::make_tuple(b.point_count, b.bottom, b.top, b.open_top));
+  const auto extent = [](const Footprint& f) { return std::make_tuple(f.minX(), f.maxX(), f.minY(), f.maxY()); };
+  EXPECT_EQ(extent(a.footprint), extent(b.footprint));
+  EXPECT_EQ(std::make_tuple(a.blocked, a.undercut, a.hidden), std::make_tuple(b.blocked, b.undercut, b.hidden));
+  EXPECT_EQ(std::make_tuple(a.triples, a.rough_triples, a.ends, a.free_ends),
+            std::make_tuple(b.triples, b.rough_triples, b.ends, b.free_ends));
+}
+
+TEST(ScanComponents, AreTheSameWhicheverPartsAreApart)
+{
+  for (unsigned seed = 0; seed < 50; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const RandomScan scan(8, 60, seed);
+    const ScanComponents together = componentsOf(scan, isNever);
+    EXPECT_TRUE(together.partsApart().empty());
+    const auto is_large = [](const HeightRange& part) { return part.point_count > 3; };
+    for (const auto& is_apart : {std::function<bool(const HeightRange&)>(is_large),
+                                 std::function<bool(const HeightRange&)>([](const HeightRange&) { return true; })})
+    {
+      const ScanComponents apart = componentsOf(scan, is_apart);
+      ASSERT_EQ(apart.componentCount(), together.componentCount());
+      for (std::uint32_t i = 0; i < apart.componentCount(); ++i) expectSame(apart.component(i), together.component(i));
+    }
+  }
+}
+
+TEST(ScanComponents, DescribesPartsByTheirReturns)
+{
+  for (unsigned seed = 0; seed < 50; ++seed)
+  {
+    SCOPED_TRACE(seed);
+    const RandomScan scan(8, 60, seed);
+    const ScanComponents found = componentsOf(scan, [](const HeightRange& part) { return part.point_count > 3; });
+    std::map<std::uint32_t, ScanComponent> expected;
+    for (const std::uint32_t pixel : found.pixels())
+    {
+      const LabelledPoint& p = scan.cloud.points[pixel];
+      ScanComponent& part = expected[found.partOf(pixel)];
+      ++part.point_count;
+      part.bottom = std::min(part.bottom, scan.returns[pixel].height);
+      part.top = std::max(part.top, scan.returns[pixel].height);
+      part.footprint.add(p.x, p.y);
+    }
+    std::vector<std::uint32_t> apart;
+    for (const auto& [part, is] : expected)
+    {
+      if (is.point_count <= 3) continue;
+      apart.push_back(part);
+      const ScanComponent& described = found.part(part);
+      EXPECT_EQ(std::make_tuple(is.point_count, is.bottom, is.top),
+                std::make_tuple(described.point_count, described.bottom, described.top));
+      EXPECT_EQ(is.footprint.minX(), described.footprint.minX());
+      EXPECT_EQ(is.footprint.maxY(), described.footprint.maxY());
+    }
+    EXPECT_EQ(apart, found.partsApart());
+    EXPECT_GT(apart.size(), 5U);
+  }
+}
+
 /// Of any width: four returns at once, and what is left of a row.
 TEST(ScanComponents, AreThoseOfEachPairOfNeighbours)
 {
@@ -105,7 +184,7 @@ TEST(ScanComponents, AreThoseOfEachPairOfNeighbours)
         ScanComponents found;
         found.start(6, columns, kDistances, full_turn);
         for (std::uint32_t row = 0; row < 6; ++row) found.addRow(row, scan.cloud, scan.returns);
-        found.finish(scan.cloud, scan.returns);
+        found.finish(scan.cloud, scan.returns, isNever);
 
         const Oracle oracle(scan, full_turn);
         std::map<std::uint32_t, std::uint32_t> part, component;  // the oracle's to those found
@@ -119,8 +198,8 @@ TEST(ScanComponents, AreThoseOfEachPairOfNeighbours)
           EXPECT_EQ(component.emplace(oracle.componentOf(i), found.of(i)).first->second, found.of(i));
         }
         EXPECT_EQ(above, found.pixels().size());
-        EXPECT_EQ(part.size(), found.parts().size());
-        EXPECT_EQ(component.size(), found.list().size());
+        EXPECT_EQ(part.size(), found.partCount());
+        EXPECT_EQ(component.size(), found.componentCount());
       }
 }
 }  // namespace

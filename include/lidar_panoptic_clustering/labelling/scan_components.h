@@ -8,21 +8,28 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <vector>
 
 namespace lidar_panoptic_clustering
 {
-/// Returns above the ground that hang together, and what of them tells an object from a wall or a tree.
-struct ScanComponent
+/// How high something stands.
+struct HeightRange
 {
   static constexpr float kFar = std::numeric_limits<float>::infinity();  ///< beyond any height
 
   std::uint32_t point_count = 0;     ///< its returns
   float bottom = kFar, top = -kFar;  ///< [m] above the ground
-  Footprint footprint;               ///< in bird's-eye view
+  bool open_top = false;             ///< goes up to the highest beam: there may be more of it above
 
-  bool open_top = false;  ///< goes up to the highest beam: there may be more of it above
+  void add(const HeightRange& other);  ///< joins the other one to it
+};
+
+/// Returns above the ground that hang together, and what of them tells an object from a wall or a tree.
+struct ScanComponent : HeightRange
+{
+  Footprint footprint;  ///< in bird's-eye view
 
   /// Columns in which a beam came by below the lowest return, where a vehicle has its gap to the ground: `blocked`
   /// beams ended at the component's foot, `undercut` ones went on underneath. A beam that met the ground before it came
@@ -38,7 +45,7 @@ struct ScanComponent
   /// Ends of its pieces of scan lines, and those where what comes next lies behind it, or nothing does: it stands free.
   std::uint32_t ends = 0, free_ends = 0;
 
-  void add(const ScanComponent& other);  ///< joins the other one to it
+  void addShape(const ScanComponent& other);  ///< joins the other one to it, but for its heights
 };
 
 /// The connected components of the returns above the ground, on the range image, at two distances.
@@ -67,18 +74,26 @@ public:
   void start(std::uint32_t rows, std::uint32_t columns, const Distances& distances, bool full_turn);
   /// The rows one after the other, from the highest beam down or from the lowest up.
   void addRow(std::uint32_t row, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
-  /// After the last row.
-  void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
-  /// Then, of the parts marked in `may_be_cut` (not 0), columns in which someone may stand become parts of their own, at
-  /// the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as it was, and
-  /// so do components.
+  /// After the last row. `is_apart` tells which parts are described on their own, by their heights: all others, most of
+  /// them a few leaves, by their components alone.
+  void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+              const std::function<bool(const HeightRange&)>& is_apart);
+  /// Then, of the parts marked in `may_be_cut` (not 0), columns in which someone may stand become parts of their own,
+  /// at the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as it was,
+  /// and so do components.
   void cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                  const std::vector<unsigned char>& may_be_cut);
+                  const std::vector<std::uint32_t>& parts);
 
   /// Numbered by first pixel in row-major order.
-  const std::vector<ScanComponent>& parts() const { return parts_; }
-  /// The sums of their parts; numbered by first part.
-  const std::vector<ScanComponent>& list() const { return components_; }
+  std::uint32_t partCount() const { return static_cast<std::uint32_t>(heights_.size()); }
+  /// The parts that are described on their own, in the order of their numbers.
+  const std::vector<std::uint32_t>& partsApart() const { return parts_apart_; }
+  /// Of one of them.
+  const ScanComponent& part(std::uint32_t part) const { return described_[description_of_part_[part]]; }
+  /// Numbered by first part.
+  std::uint32_t componentCount() const { return component_count_; }
+  /// The sum of its parts.
+  const ScanComponent& component(std::uint32_t component) const { return described_[component]; }
   /// By part.
   const std::vector<std::uint32_t>& componentOfPart() const { return component_of_part_; }
 
@@ -107,13 +122,14 @@ private:
   static constexpr std::uint32_t kColumnReach = 8, kRowReach = 4;
 
   std::size_t gatherRow(const GroundedReturn* row, std::uint32_t begin, std::uint32_t* to);
-  void numberParts();
+  void numberParts(const std::vector<GroundedReturn>& returns);
   void joinParts();
+  void setApart(const std::function<bool(const HeightRange&)>& is_apart);
+  void describeApart(std::uint32_t part);
   void examineTops(const LabelledCloud& cloud, bool highest_first);
   void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
   void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
   void measureNoise(const std::vector<GroundedReturn>& returns);
-  void fetchPart(std::uint32_t run) const;
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
                     std::uint32_t length);
@@ -136,13 +152,15 @@ private:
   std::vector<std::int32_t> has_return_;  ///< by column: not 0
   std::vector<Pair> loose_;               ///< runs closer than the link, not the step
   std::vector<std::uint32_t> part_of_run_;
-  std::vector<ScanComponent> parts_, components_;
+  std::vector<HeightRange> heights_;      ///< by part
+  std::vector<ScanComponent> described_;  ///< the components, and then the parts that are apart
+  std::vector<std::uint32_t> parts_apart_, description_of_part_;
   std::vector<std::uint32_t> component_of_part_;
   std::uint32_t component_count_ = 0;
   ColumnProfile profile_;
-  std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of those that may be cut
+  std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of the given parts
   std::vector<std::uint32_t> cut_;                   ///< pixels
-  std::vector<float> bends_;  ///< of the ground, some of them [m]
-  float bend_noise_ = 0.0F;   ///< [m]
+  std::vector<float> bends_;                         ///< of the ground, some of them [m]
+  float bend_noise_ = 0.0F;                          ///< [m]
 };
 }  // namespace lidar_panoptic_clustering
