@@ -139,16 +139,11 @@ bool ComponentJudge::isVehicle(const ScanComponent& c) const
   return a.has_feet ? a.undercut >= 0.5F : a.size.width > 1.2F && a.size.length < kCarLength;
 }
 
-bool ComponentJudge::hasPersonsHeight(const ScanComponent& c)
+bool ComponentJudge::mayHoldPerson(const ScanComponent& c) const
 {
   constexpr std::uint32_t kFewest = 10;
-  if (c.point_count < kFewest || c.open_top) return false;
-  return c.top >= 1.2F && c.top <= 2.1F && c.top - c.bottom >= 0.5F && c.bottom <= 1.1F;  // sitting to tall
-}
-
-bool ComponentJudge::mayHoldPerson(const ScanComponent& part) const
-{
-  return hasPersonsHeight(part) && !isPerson(part);
+  if (c.point_count < kFewest || c.top < 1.2F || c.top > 2.1F) return false;  // sitting to tall
+  return c.top - c.bottom >= 0.5F && c.bottom <= 1.1F && !c.open_top;
 }
 
 bool ComponentJudge::isPersonCutOff(const ScanComponent& part) const
@@ -160,7 +155,7 @@ bool ComponentJudge::isPersonCutOff(const ScanComponent& part) const
 bool ComponentJudge::isPerson(const ScanComponent& c) const
 {
   constexpr float kMostRough = 0.6F;  // bags, arms and legs
-  if (!hasPersonsHeight(c)) return false;
+  if (!mayHoldPerson(c)) return false;
   // beams that came by underneath: a window's frame, a mirror; legs stand on the ground, or something hides them
   constexpr float kHangs = 0.35F;
   constexpr std::uint32_t kBeams = 2;

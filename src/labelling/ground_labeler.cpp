@@ -87,42 +87,46 @@ void GroundLabeler::showPart(LabelledCloud& cloud, std::uint32_t pixel)
   cloud.points[pixel].label = ids_[shown];
 }
 
-/// Someone may lean on what is no vehicle.
-void GroundLabeler::cutParts(const LabelledCloud& cloud)
-{
-  const auto& parts = components_.parts();
-  may_be_cut_.assign(parts.size(), 0);
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
-  {
-    if (!judge_.mayHoldPerson(parts[part])) continue;
-    const std::uint32_t component = components_.componentOfPart()[part];
-    may_be_cut_[part] =
-        shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.list()[component]) ? 1 : 0;
-  }
-  components_.cutColumns(cloud, returns_, may_be_cut_);
-}
-
 /// A component's parts are what it is, but for people.
 void GroundLabeler::judge(const LabelledCloud& cloud)
 {
-  const auto& parts = components_.parts();
-  const auto& components = components_.list();
   shown_of_component_.clear();
-  for (const ScanComponent& c : components) shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
-  const std::size_t whole_count = parts.size();
-  cutParts(cloud);
-  shown_of_part_.assign(parts.size(), kIgnored);
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
+  for (const ScanComponent& c : components_.list())
+    shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
+  const std::vector<std::uint32_t>& component_of = components_.componentOfPart();
+  shown_of_part_.assign(component_of.size(), kIgnored);
+  leant_on_.clear();
+  for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
   {
-    const std::uint32_t component = components_.componentOfPart()[part];
-    if (part < whole_count ? !judge_.isPerson(parts[part]) : !judge_.isPersonCutOff(parts[part])) continue;
-    shown_of_part_[part] = kObject;
-    const bool is_most = 3 * parts[part].point_count > 2 * components[component].point_count;
-    if (!is_most && !judge_.isVehicle(components[component])) shown_of_component_[component] = kStructure;
+    const ScanComponent& candidate = components_.parts()[part];
+    if (judge_.isPerson(candidate))
+      showPerson(part);
+    else if (judge_.mayHoldPerson(candidate) && isNoVehicle(component_of[part]))
+      leant_on_.push_back(part);
   }
-  for (std::uint32_t part = 0; part < parts.size(); ++part)
-    if (shown_of_part_[part] == kIgnored)
-      shown_of_part_[part] = shown_of_component_[components_.componentOfPart()[part]];
+  components_.cutColumns(cloud, returns_, leant_on_);
+  for (auto part = static_cast<std::uint32_t>(shown_of_part_.size()); part < component_of.size(); ++part)
+  {
+    shown_of_part_.push_back(kIgnored);
+    if (judge_.isPersonCutOff(components_.parts()[part])) showPerson(part);
+  }
+  for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
+    if (shown_of_part_[part] == kIgnored) shown_of_part_[part] = shown_of_component_[component_of[part]];
+}
+
+bool GroundLabeler::isNoVehicle(std::uint32_t component) const
+{
+  return shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.list()[component]);
+}
+
+/// What is around a person and no vehicle is structure.
+void GroundLabeler::showPerson(std::uint32_t part)
+{
+  shown_of_part_[part] = kObject;
+  const std::uint32_t component = components_.componentOfPart()[part];
+  const ScanComponent& around = components_.list()[component];
+  const bool is_most = 3 * components_.parts()[part].point_count > 2 * around.point_count;
+  if (!is_most && !judge_.isVehicle(around)) shown_of_component_[component] = kStructure;
 }
 
 void GroundLabeler::labelUnordered(const std::vector<ScanPoint>& points, std::vector<std::uint32_t>& labels)

@@ -3,26 +3,32 @@
 
 namespace lidar_panoptic_clustering
 {
-void ScanComponents::cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                                const std::vector<unsigned char>& may_be_cut)
+namespace
 {
-  const auto part_count = static_cast<std::uint32_t>(parts_.size());
-  first_run_.assign(part_count, kNone);
+constexpr std::uint32_t kLastRun = ScanComponents::kNone - 1;
+}  // namespace
+
+void ScanComponents::cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
+                                const std::vector<std::uint32_t>& parts)
+{
+  if (parts.empty()) return;
+  first_run_.assign(parts_.size(), kNone);
+  for (const std::uint32_t part : parts) first_run_[part] = kLastRun;
   next_run_.resize(part_of_run_.size());
   for (auto run = static_cast<std::uint32_t>(part_of_run_.size()); run-- > 0;)
   {
-    const std::uint32_t part = part_of_run_[run];
-    if (may_be_cut[part] == 0) continue;
-    next_run_[run] = first_run_[part], first_run_[part] = run;
+    std::uint32_t& first = first_run_[part_of_run_[run]];
+    if (first == kNone) continue;
+    next_run_[run] = first;
+    first = run;
   }
-  for (std::uint32_t part = 0; part < part_count; ++part)
-    if (first_run_[part] != kNone) cutPart(cloud, returns, part);
+  for (const std::uint32_t part : parts) cutPart(cloud, returns, part);
 }
 
 void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part)
 {
   profile_.start(columns_, pixels_[begin_of_run_[first_run_[part]]] % columns_);
-  for (std::uint32_t run = first_run_[part]; run != kNone; run = next_run_[run])
+  for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
   {
     const std::uint32_t begin = begin_of_run_[run], row_begin = pixels_[begin] / columns_ * columns_;
     for (std::uint32_t k = begin; k < begin_of_run_[run + 1]; ++k)
@@ -30,11 +36,20 @@ void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<Groun
   }
   for (const ColumnProfile::Columns& columns : profile_.find())
   {
-    cut_.clear();
-    for (std::uint32_t run = first_run_[part]; run != kNone; run = next_run_[run])
-      for (std::uint32_t k = begin_of_run_[run]; k < begin_of_run_[run + 1]; ++k)
-        if (columns.holds(pixels_[k] % columns_, columns_)) cut_.push_back(pixels_[k]);
+    gatherCut(part, columns);
     if (isFreeAbove(returns)) addCut(cloud, returns, part);
+  }
+}
+
+/// The pixels of a part in some columns, in row-major order.
+void ScanComponents::gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns)
+{
+  cut_.clear();
+  for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
+  {
+    const std::uint32_t begin = begin_of_run_[run], row_begin = pixels_[begin] / columns_ * columns_;
+    for (std::uint32_t k = begin; k < begin_of_run_[run + 1]; ++k)
+      if (columns.holds(pixels_[k] - row_begin, columns_)) cut_.push_back(pixels_[k]);
   }
 }
 

@@ -61,7 +61,7 @@ public:
   bool isPerson(const ScanComponent& part) const;
   /// The same of columns that were cut from a part.
   bool isPersonCutOff(const ScanComponent& part) const;
-  /// Whether someone may be a piece of such a part: as high, as low and with as many returns, but no person as a whole.
+  /// Whether someone may be a part or a piece of it: it is as high and has as many returns.
   bool mayHoldPerson(const ScanComponent& part) const;
   /// Whether a component that a person was found in is an object nevertheless.
   bool isVehicle(const ScanComponent& component) const;
@@ -79,7 +79,6 @@ private:
     float least_in_front;     ///< the same of what shows no foot
   };
   static Bargain bargainOf(StructureBias bias);
-  static bool hasPersonsHeight(const ScanComponent& c);
   static bool isPole(const ScanComponent& c, const Appearance& a);
   bool isFoliage(const Appearance& a) const;
   bool isWall(const ScanComponent& c, const Appearance& a) const;

@@ -95,7 +95,8 @@ public:
 
 private:
   void judge(const LabelledCloud& cloud);
-  void cutParts(const LabelledCloud& cloud);
+  void showPerson(std::uint32_t part);
+  bool isNoVehicle(std::uint32_t component) const;
   void showGround(LabelledCloud& cloud, std::size_t begin, std::size_t end);
   void showPart(LabelledCloud& cloud, std::uint32_t pixel);
   unsigned char hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;
@@ -108,7 +109,7 @@ private:
   PolarView view_;
   bool found_ground_ = false;
   std::vector<GroundedReturn> returns_;
-  std::vector<unsigned char> may_be_cut_;  ///< by part
+  std::vector<std::uint32_t> leant_on_;  ///< parts that someone may lean on
   std::vector<unsigned char> shown_of_component_, shown_of_part_, shown_;  ///< places in ids_; the last by pixel
 };
 }  // namespace lidar_panoptic_clustering

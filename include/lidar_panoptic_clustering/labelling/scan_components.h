@@ -69,11 +69,11 @@ public:
   void addRow(std::uint32_t row, const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
   /// After the last row.
   void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
-  /// Then, of the parts marked in `may_be_cut` (not 0), columns in which someone may stand become parts of their own, at
-  /// the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as it was, and
-  /// so do components.
+  /// Then, columns of the given parts in which someone may stand, and above which the beams go farther, become parts of
+  /// their own, at the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as
+  /// it was, and so do components. Linear in the runs of neighbours and the given parts' returns.
   void cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
-                  const std::vector<unsigned char>& may_be_cut);
+                  const std::vector<std::uint32_t>& parts);
 
   /// Numbered by first pixel in row-major order.
   const std::vector<ScanComponent>& parts() const { return parts_; }
@@ -118,6 +118,7 @@ private:
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
                     std::uint32_t length);
   void cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part);
+  void gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns);
   bool isFreeAbove(const std::vector<GroundedReturn>& returns) const;
   void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
@@ -140,7 +141,7 @@ private:
   std::vector<std::uint32_t> component_of_part_;
   std::uint32_t component_count_ = 0;
   ColumnProfile profile_;
-  std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of those that may be cut
+  std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of the given parts
   std::vector<std::uint32_t> cut_;                   ///< pixels
   std::vector<float> bends_;  ///< of the ground, some of them [m]
   float bend_noise_ = 0.0F;   ///< [m]
