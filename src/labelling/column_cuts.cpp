@@ -6,6 +6,7 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
+constexpr float kSitting = 1.2F;     // [m] the crown of someone who sits
 constexpr float kShoulders = 0.45F;  // [m] under the crown: a head with its neck, 0.3, and shoulders fall by half of it
 constexpr float kHead = 0.25F;       // [m] high; what of a column is less and hangs is no body
 constexpr float kHangs = 1.1F;       // [m] what hides someone below is no higher: a counter
@@ -67,6 +68,7 @@ void ColumnProfile::findAll()
 
 void ColumnProfile::take(std::uint32_t peak, std::uint32_t begin, std::uint32_t end)
 {
+  if (!(extents_[peak].top > kSitting)) return;
   const float lowest = extents_[peak].top - kShoulders;
   std::uint32_t first = peak;
   for (std::uint32_t place = peak; place > begin && (!isSeen(place) || extents_[place].top >= lowest);)

@@ -46,6 +46,18 @@ void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<Groun
   }
 }
 
+/// The pixels of a part in some columns, in row-major order.
+void ScanComponents::gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns)
+{
+  cut_.clear();
+  for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
+  {
+    const std::uint32_t begin = begin_of_run_[run], row_begin = pixels_[begin] / columns_ * columns_;
+    for (std::uint32_t k = begin; k < begin_of_run_[run + 1]; ++k)
+      if (columns.holds(pixels_[k] - row_begin, columns_)) cut_.push_back(pixels_[k]);
+  }
+}
+
 /// Whether above most of the columns of a cut the beams go farther.
 bool ScanComponents::isFreeAbove(const std::vector<GroundedReturn>& returns) const
 {

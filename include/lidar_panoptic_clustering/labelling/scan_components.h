@@ -134,6 +134,7 @@ private:
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
                     std::uint32_t length);
   void cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part);
+  void gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns);
   bool isFreeAbove(const std::vector<GroundedReturn>& returns) const;
   void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
