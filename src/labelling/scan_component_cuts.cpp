@@ -38,10 +38,7 @@ void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<Groun
   }
   for (const ColumnProfile::Columns& columns : profile_.find())
   {
-    cut_.clear();
-    for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
-      for (std::uint32_t k = begin_of_run_[run]; k < begin_of_run_[run + 1]; ++k)
-        if (columns.holds(pixels_[k] % columns_, columns_)) cut_.push_back(pixels_[k]);
+    gatherCut(part, columns);
     if (isFreeAbove(returns)) addCut(cloud, returns, part);
   }
 }

@@ -78,9 +78,9 @@ public:
   /// them a few leaves, by their components alone.
   void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
               const std::function<bool(const HeightRange&)>& is_apart);
-  /// Then, of the parts marked in `may_be_cut` (not 0), columns in which someone may stand become parts of their own,
-  /// at the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as it was,
-  /// and so do components.
+  /// Then, columns of the given parts in which someone may stand, and above which the beams go farther, become parts of
+  /// their own, the last of partsApart(), in the same component; see ColumnProfile. What is left of a part stays
+  /// measured as it was, and so do components. Linear in the runs of neighbours and the given parts' returns.
   void cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
                   const std::vector<std::uint32_t>& parts);
 
