@@ -101,7 +101,7 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
     const ScanComponent& candidate = components_.parts()[part];
     if (judge_.isPerson(candidate))
       showPerson(part);
-    else if (judge_.mayHoldPerson(candidate) && isNoVehicle(component_of[part]))
+    else if (judge_.mayHoldPerson(candidate) && mayBeStall(component_of[part]))
       leant_on_.push_back(part);
   }
   components_.cutColumns(cloud, returns_, leant_on_);
@@ -114,9 +114,10 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
     if (shown_of_part_[part] == kIgnored) shown_of_part_[part] = shown_of_component_[component_of[part]];
 }
 
-bool GroundLabeler::isNoVehicle(std::uint32_t component) const
+/// Sheet metal is no stall, whatever stands out of it.
+bool GroundLabeler::mayBeStall(std::uint32_t component) const
 {
-  return shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.list()[component]);
+  return shown_of_component_[component] == kStructure || !judge_.isSmooth(components_.list()[component]);
 }
 
 /// What is around a person and no vehicle is structure.

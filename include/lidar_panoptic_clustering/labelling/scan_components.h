@@ -70,8 +70,8 @@ public:
   /// After the last row.
   void finish(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns);
   /// Then, columns of the given parts in which someone may stand, and above which the beams go farther, become parts of
-  /// their own, at the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured as
-  /// it was, and so do components. Linear in the runs of neighbours and the given parts' returns.
+  /// their own, at the end of parts(), in the same component; see ColumnProfile. What is left of a part stays measured
+  /// as it was, and so do components. Linear in the runs of neighbours and the given parts' returns.
   void cutColumns(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns,
                   const std::vector<std::uint32_t>& parts);
 
@@ -118,9 +118,11 @@ private:
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
                     std::uint32_t length);
   void cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part);
-  void gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns);
-  bool isFreeAbove(const std::vector<GroundedReturn>& returns) const;
-  void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from);
+  void gatherCuts(std::uint32_t part, std::uint32_t count);
+  bool isFreeAbove(const std::vector<GroundedReturn>& returns, const std::vector<std::uint32_t>& cut) const;
+  void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from,
+              const std::vector<std::uint32_t>& cut);
+  void takeFeet(const std::vector<GroundedReturn>& returns, std::uint32_t from, const std::vector<std::uint32_t>& cut);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
                   std::int32_t direction);
 
@@ -142,8 +144,8 @@ private:
   std::uint32_t component_count_ = 0;
   ColumnProfile profile_;
   std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of the given parts
-  std::vector<std::uint32_t> cut_;                   ///< pixels
-  std::vector<float> bends_;  ///< of the ground, some of them [m]
-  float bend_noise_ = 0.0F;   ///< [m]
+  std::vector<std::vector<std::uint32_t>> cuts_;     ///< of the part in hand: their pixels
+  std::vector<float> bends_;                         ///< of the ground, some of them [m]
+  float bend_noise_ = 0.0F;                          ///< [m]
 };
 }  // namespace lidar_panoptic_clustering
