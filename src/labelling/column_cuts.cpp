@@ -16,6 +16,7 @@ void ColumnProfile::start(std::uint32_t columns, std::uint32_t column)
 {
   columns_ = columns;
   extents_.resize(columns);
+  cut_of_.resize(columns);
   const std::uint32_t half = columns / 2;
   origin_ = column >= half ? column - half : column + columns - half;
   begin_ = half, end_ = half;
@@ -23,31 +24,33 @@ void ColumnProfile::start(std::uint32_t columns, std::uint32_t column)
 
 void ColumnProfile::add(std::uint32_t column, float height)
 {
-  const std::uint32_t place = column >= origin_ ? column - origin_ : column + columns_ - origin_;
+  const std::uint32_t place = placeOf(column);
   begin_ = std::min(begin_, place), end_ = std::max(end_, place + 1);
   Extent& extent = extents_[place];
   extent.top = std::max(extent.top, height), extent.bottom = std::min(extent.bottom, height);
 }
 
-const std::vector<ColumnProfile::Columns>& ColumnProfile::find()
+std::uint32_t ColumnProfile::find()
 {
-  found_.clear();
+  count_ = 0;
+  std::fill(cut_of_.begin() + begin_, cut_of_.begin() + end_, kNone);
   dropWhatHangs();
   findAll();
   std::fill(extents_.begin() + begin_, extents_.begin() + end_, Extent{});
-  return found_;
+  return count_;
 }
 
+/// Then they are as low as the ground.
 void ColumnProfile::dropWhatHangs()
 {
   for (std::uint32_t place = begin_; place < end_; ++place)
   {
     Extent& extent = extents_[place];
-    if (extent.bottom > kHangs && extent.top - extent.bottom < kHead && isSeen(place)) extent = {0.0F, 0.0F};
+    if (isSeen(place) && extent.bottom > kHangs && extent.top - extent.bottom < kHead) extent = {0.0F, 0.0F};
   }
 }
 
-/// A peak ends where the columns are lower by more than its shoulders are; so that each column is looked at twice.
+/// A peak ends where the columns are lower by more than its shoulders are.
 void ColumnProfile::findAll()
 {
   std::uint32_t begin = begin_, peak = begin_;
@@ -66,15 +69,21 @@ void ColumnProfile::findAll()
   take(peak, begin, end_);
 }
 
+/// `begin`: where the peak before it ended, so that each column is looked at twice.
 void ColumnProfile::take(std::uint32_t peak, std::uint32_t begin, std::uint32_t end)
 {
   if (!(extents_[peak].top > kSitting)) return;
-  const float lowest = extents_[peak].top - kShoulders;
+  const auto is_lower = [&](std::uint32_t place) { return extents_[place].top < extents_[peak].top - kShoulders; };
   std::uint32_t first = peak;
-  for (std::uint32_t place = peak; place > begin && (!isSeen(place) || extents_[place].top >= lowest);)
-    if (isSeen(--place) && extents_[place].top >= lowest) first = place;
-  const bool is_whole = begin == begin_ && first == begin_ && end == end_;
+  for (std::uint32_t place = peak; place > begin;)
+  {
+    --place;
+    if (!isSeen(place)) continue;
+    if (is_lower(place)) break;
+    first = place;
+  }
+  const bool is_whole = first == begin_ && end == end_;
   if (is_whole || (first == begin && begin > begin_)) return;  // or as high as its neighbour's shoulder
-  found_.push_back({(origin_ + first) % columns_, end - first});
+  std::fill(cut_of_.begin() + first, cut_of_.begin() + end, count_++);
 }
 }  // namespace lidar_panoptic_clustering

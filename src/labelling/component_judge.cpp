@@ -11,6 +11,7 @@ constexpr float kPersonHeight = 2.2F;  // [m] with a hat on; cars are lower, van
 constexpr float kHovering = 2.0F;      // [m] nothing that drives or walks ends above
 constexpr float kLowest = 0.4F;        // [m] nothing that drives or walks ends below; kerbs, plants and stones do
 constexpr float kWidest = 3.2F;        // [m] the European limit of 2.55 with mirrors
+constexpr float kSmooth = 0.32F;       // share of rough triples in sheet metal with windows
 constexpr float kCarLength = 7.0F;     // [m] with a trailer hitch, or two that stand close
 constexpr std::uint32_t kFewestReturns = 4, kFewestFeet = 5, kFewestTriples = 20;
 constexpr std::uint32_t kMostHidden =
@@ -129,9 +130,13 @@ bool ComponentJudge::isBehind(const ScanComponent& c, const Appearance& a) const
   return !has_depth && !stands_on_wheels && isBelow(bargain_.least_in_front, c.free_ends, c.ends);
 }
 
+bool ComponentJudge::isSmooth(const ScanComponent& c) const
+{
+  return Appearance(c).rough <= kSmooth;
+}
+
 bool ComponentJudge::isVehicle(const ScanComponent& c) const
 {
-  constexpr float kSmooth = 0.32F;                          // sheet metal with windows
   constexpr float kRiderLength = 2.2F, kRiderWidth = 1.1F;  // [m] a motorcycle's or a cargo bicycle's, with elbows
   const Appearance a(c);
   if (!a.maybe_tall && a.size.length < kRiderLength && a.size.width < kRiderWidth) return true;

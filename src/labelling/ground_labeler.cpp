@@ -100,7 +100,7 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
   for (const std::uint32_t part : apart)
     if (judge_.isPerson(components_.part(part)))
       showPerson(part);
-    else if (isNoVehicle(component_of[part]))
+    else if (mayBeStall(component_of[part]))
       leant_on_.push_back(part);
   components_.cutColumns(cloud, returns_, leant_on_);
   shown_of_part_.resize(components_.partCount(), kIgnored);
@@ -110,9 +110,10 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
     if (shown_of_part_[part] == kIgnored) shown_of_part_[part] = shown_of_component_[component_of[part]];
 }
 
-bool GroundLabeler::isNoVehicle(std::uint32_t component) const
+/// Sheet metal is no stall, whatever stands out of it.
+bool GroundLabeler::mayBeStall(std::uint32_t component) const
 {
-  return shown_of_component_[component] == kStructure || !judge_.isVehicle(components_.component(component));
+  return shown_of_component_[component] == kStructure || !judge_.isSmooth(components_.component(component));
 }
 
 /// What is around a person and no vehicle is structure.

@@ -36,32 +36,35 @@ void ScanComponents::cutPart(const LabelledCloud& cloud, const std::vector<Groun
     for (std::uint32_t k = begin; k < begin_of_run_[run + 1]; ++k)
       profile_.add(pixels_[k] - row_begin, returns[pixels_[k]].height);
   }
-  for (const ColumnProfile::Columns& columns : profile_.find())
-  {
-    gatherCut(part, columns);
-    if (isFreeAbove(returns)) addCut(cloud, returns, part);
-  }
+  const std::uint32_t count = profile_.find();
+  if (count == 0) return;
+  gatherCuts(part, count);
+  for (std::uint32_t cut = 0; cut < count; ++cut)
+    if (isFreeAbove(returns, cuts_[cut])) addCut(cloud, returns, part, cuts_[cut]);
 }
 
-/// The pixels of a part in some columns, in row-major order.
-void ScanComponents::gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns)
+/// The pixels of a part's cuts, in row-major order.
+void ScanComponents::gatherCuts(std::uint32_t part, std::uint32_t count)
 {
-  cut_.clear();
+  if (cuts_.size() < count) cuts_.resize(count);
+  for (std::uint32_t cut = 0; cut < count; ++cut) cuts_[cut].clear();
   for (std::uint32_t run = first_run_[part]; run != kLastRun; run = next_run_[run])
   {
     const std::uint32_t begin = begin_of_run_[run], row_begin = pixels_[begin] / columns_ * columns_;
     for (std::uint32_t k = begin; k < begin_of_run_[run + 1]; ++k)
-      if (columns.holds(pixels_[k] - row_begin, columns_)) cut_.push_back(pixels_[k]);
+      if (const std::uint32_t cut = profile_.cutOf(pixels_[k] - row_begin); cut != ColumnProfile::kNone)
+        cuts_[cut].push_back(pixels_[k]);
   }
 }
 
 /// Whether above most of the columns of a cut the beams go farther.
-bool ScanComponents::isFreeAbove(const std::vector<GroundedReturn>& returns) const
+bool ScanComponents::isFreeAbove(const std::vector<GroundedReturn>& returns,
+                                 const std::vector<std::uint32_t>& cut) const
 {
   constexpr float kBehind = 0.3F;  // [m]
   const std::uint32_t step = highest_first_ ? 0U - columns_ : columns_, size = rows_ * columns_;
   std::uint32_t free = 0, blocked = 0;
-  for (const std::uint32_t pixel : cut_)
+  for (const std::uint32_t pixel : cut)
   {
     std::uint32_t over = pixel + step, rows = 1;
     for (; over < size && rows <= kRowReach && !returns[over].isReturn(); ++rows) over += step;
@@ -72,36 +75,42 @@ bool ScanComponents::isFreeAbove(const std::vector<GroundedReturn>& returns) con
   return free >= blocked;
 }
 
-/// Makes a part of pixels of another one, with what of its feet lies below them.
-void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from)
+/// Makes a part of some pixels of another one.
+void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from,
+                            const std::vector<std::uint32_t>& cut)
 {
-  const auto part = partCount();
-  const std::uint32_t step = highest_first_ ? columns_ : 0U - columns_, size = rows_ * columns_;
-  HeightRange height;
-  height.point_count = static_cast<std::uint32_t>(cut_.size());
-  for (const std::uint32_t pixel : cut_)
-    height.bottom = std::min(height.bottom, returns[pixel].height),
-    height.top = std::max(height.top, returns[pixel].height);
-  heights_.push_back(height);
+  const std::uint32_t part = partCount();
+  heights_.emplace_back();
+  heights_[part].point_count = static_cast<std::uint32_t>(cut.size());
+  for (const std::uint32_t pixel : cut) heights_[part].widen(returns[pixel].height);
   component_of_part_.push_back(component_of_part_[from]);
   description_of_part_.push_back(kNone);
   describeApart(part);
-  for (const std::uint32_t pixel : cut_) part_of_[pixel] = part;
-  for (const std::uint32_t pixel : cut_)
-  {
-    std::uint32_t under = pixel + step;
-    if (under < size && part_of_[under] == kNone) examineFoot(returns, pixel, highest_first_);
-    for (; under < size && part_of_[under] == from; under += step) part_of_[under] = part;
-  }
-  component_of_part_[part] = kNone - 1;
-  for (std::size_t k = 0; k < cut_.size();)
+  for (const std::uint32_t pixel : cut) part_of_[pixel] = part;
+  takeFeet(returns, from, cut);
+  component_of_part_[part] = kNone - 1;  // nobody's: the edge to what is left is not its surface's roughness
+  for (std::size_t k = 0; k < cut.size();)
   {
     std::uint32_t length = 1;
-    const std::uint32_t first = cut_[k], row_end = (first / columns_ + 1) * columns_;
-    while (k + length < cut_.size() && cut_[k + length] == first + length && first + length < row_end) ++length;
+    const std::uint32_t first = cut[k], row_end = (first / columns_ + 1) * columns_;
+    while (k + length < cut.size() && cut[k + length] == first + length && first + length < row_end) ++length;
     measurePiece(cloud, returns, first, length);
     k += length;
   }
   component_of_part_[part] = component_of_part_[from];
+}
+
+/// What of the feet of the part that pixels were cut from lies below them comes with them; elsewhere beams may have
+/// come by underneath.
+void ScanComponents::takeFeet(const std::vector<GroundedReturn>& returns, std::uint32_t from,
+                              const std::vector<std::uint32_t>& cut)
+{
+  const std::uint32_t step = highest_first_ ? columns_ : 0U - columns_, size = rows_ * columns_;
+  for (const std::uint32_t pixel : cut)
+  {
+    std::uint32_t under = pixel + step;  // above row 0 it wraps to beyond the last
+    if (under < size && part_of_[under] == kNone) examineFoot(returns, pixel, highest_first_);
+    for (; under < size && part_of_[under] == from; under += step) part_of_[under] = part_of_[pixel];
+  }
 }
 }  // namespace lidar_panoptic_clustering

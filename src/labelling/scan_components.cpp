@@ -92,8 +92,7 @@ void ScanComponents::numberParts(const std::vector<GroundedReturn>& returns)
     here.point_count = begin_of_run_[run + 1] - begin_of_run_[run];
     for (std::uint32_t k = begin_of_run_[run]; k < begin_of_run_[run + 1]; ++k)
     {
-      const float height = returns[pixels_[k]].height;
-      here.bottom = std::min(here.bottom, height), here.top = std::max(here.top, height);
+      here.widen(returns[pixels_[k]].height);
       part_of_[pixels_[k]] = part;
     }
     heights_[part].add(here);

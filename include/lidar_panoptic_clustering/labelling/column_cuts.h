@@ -16,38 +16,35 @@ namespace lidar_panoptic_clustering
 class ColumnProfile
 {
 public:
-  /// Neighbouring columns, from `first` to before `first + count`, in a full turn beyond the last one too.
-  struct Columns
-  {
-    std::uint32_t first, count;
+  static constexpr std::uint32_t kNone = 0xFFFFFFFF;  ///< no cut
 
-    /// `columns`: of the image.
-    bool holds(std::uint32_t column, std::uint32_t columns) const
-    {
-      const std::uint32_t beyond = column >= first ? column - first : column + columns - first;
-      return beyond < count;
-    }
-  };
-
-  /// Begins with a part that has a return in `column`, in an image of `columns`.
+  /// Begins with a part that has a return in `column`, in an image of `columns`, the last of which is the first one's
+  /// neighbour.
   void start(std::uint32_t columns, std::uint32_t column);
   /// A return, `height` above the ground [m].
   void add(std::uint32_t column, float height);
-  /// Where someone may stand in it, but for the whole of it; valid until the next call.
-  const std::vector<Columns>& find();
+  /// Numbers the groups of neighbouring columns in which someone may stand, but for the whole of the part; returns how
+  /// many there are.
+  std::uint32_t find();
+  /// Of a column of the part after find(): the number of its group, kNone for those without.
+  std::uint32_t cutOf(std::uint32_t column) const { return cut_of_[placeOf(column)]; }
 
 private:
   struct Extent
   {
     float top = -std::numeric_limits<float>::infinity(), bottom = std::numeric_limits<float>::infinity();
   };
+  std::uint32_t placeOf(std::uint32_t column) const
+  {
+    return column >= origin_ ? column - origin_ : column + columns_ - origin_;
+  }
   bool isSeen(std::uint32_t place) const { return extents_[place].top >= extents_[place].bottom; }
   void dropWhatHangs();
   void findAll();
   void take(std::uint32_t peak, std::uint32_t begin, std::uint32_t end);
 
-  std::vector<Extent> extents_;  ///< by place: columns from half a turn before the first return's on
-  std::uint32_t columns_ = 0, origin_ = 0, begin_ = 0, end_ = 0;
-  std::vector<Columns> found_;
+  std::vector<Extent> extents_;        ///< by place: columns from half a turn before the first return's on
+  std::vector<std::uint32_t> cut_of_;  ///< by place
+  std::uint32_t columns_ = 0, origin_ = 0, begin_ = 0, end_ = 0, count_ = 0;
 };
 }  // namespace lidar_panoptic_clustering

@@ -59,10 +59,13 @@ public:
   bool isStructure(const ScanComponent& component) const;
   /// Whether a part of a component is a person.
   bool isPerson(const ScanComponent& part) const;
-  /// The same of columns that were cut from a part.
+  /// Whether columns that were cut from a part are a person (see ColumnProfile): as others, and half a chest's depth is
+  /// seen, which a post and what is fixed to it do not show.
   bool isPersonCutOff(const ScanComponent& part) const;
-  /// Whether someone may be a part or a piece of it: it is as high and has as many returns.
+  /// Whether a part may be a person or hold one: it is as high, as low and has as many returns.
   bool mayHoldPerson(const HeightRange& part) const;
+  /// Whether its surface is no rougher than sheet metal with windows.
+  bool isSmooth(const ScanComponent& component) const;
   /// Whether a component that a person was found in is an object nevertheless.
   bool isVehicle(const ScanComponent& component) const;
 

@@ -56,11 +56,12 @@ struct GroundReport
 /// raw ids of the class table "object".
 ///
 /// The ground is followed from under the sensor (see GroundSurface); what hangs together above it (see ScanComponents)
-/// is judged as a whole, but for people, who are found before what they stand at (see ComponentJudge). The sensor's
-/// height over the ground and a tilt of up to 12 degrees each way are found in each scan.
+/// is judged as a whole, but for people, who are found before what they stand at (see ComponentJudge), and where they
+/// lean on it are told by how high they reach (see ColumnProfile). The sensor's height over the ground and a tilt of up
+/// to 12 degrees each way are found in each scan.
 ///
 /// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side down to the ground
-/// from a wall, and a person who leans on something from that thing.
+/// from a wall, and a person who leans on something as high as his shoulders from that thing.
 ///
 /// Not shared between threads; keeps its memory.
 class GroundLabeler
@@ -96,7 +97,7 @@ public:
 private:
   void judge(const LabelledCloud& cloud);
   void showPerson(std::uint32_t part);
-  bool isNoVehicle(std::uint32_t component) const;
+  bool mayBeStall(std::uint32_t component) const;
   void showGround(LabelledCloud& cloud, std::size_t begin, std::size_t end);
   void showPart(LabelledCloud& cloud, std::uint32_t pixel);
   unsigned char hidden(const ScanPoint& p, const LabelledCloud& cloud, std::uint32_t pixel) const;

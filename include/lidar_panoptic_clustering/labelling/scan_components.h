@@ -24,6 +24,7 @@ struct HeightRange
   bool open_top = false;             ///< goes up to the highest beam: there may be more of it above
 
   void add(const HeightRange& other);  ///< joins the other one to it
+  void widen(float height) { bottom = std::min(bottom, height), top = std::max(top, height); }  ///< to hold it [m]
 };
 
 /// Returns above the ground that hang together, and what of them tells an object from a wall or a tree.
@@ -134,9 +135,11 @@ private:
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
                     std::uint32_t length);
   void cutPart(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t part);
-  void gatherCut(std::uint32_t part, const ColumnProfile::Columns& columns);
-  bool isFreeAbove(const std::vector<GroundedReturn>& returns) const;
-  void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from);
+  void gatherCuts(std::uint32_t part, std::uint32_t count);
+  bool isFreeAbove(const std::vector<GroundedReturn>& returns, const std::vector<std::uint32_t>& cut) const;
+  void addCut(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t from,
+              const std::vector<std::uint32_t>& cut);
+  void takeFeet(const std::vector<GroundedReturn>& returns, std::uint32_t from, const std::vector<std::uint32_t>& cut);
   void examineEnd(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t pixel,
                   std::int32_t direction);
 
@@ -160,7 +163,7 @@ private:
   std::uint32_t component_count_ = 0;
   ColumnProfile profile_;
   std::vector<std::uint32_t> first_run_, next_run_;  ///< by part, by run: of the given parts
-  std::vector<std::uint32_t> cut_;                   ///< pixels
+  std::vector<std::vector<std::uint32_t>> cuts_;     ///< of the part in hand: their pixels
   std::vector<float> bends_;                         ///< of the ground, some of them [m]
   float bend_noise_ = 0.0F;                          ///< [m]
 };
