@@ -144,13 +144,6 @@ bool ComponentJudge::isVehicle(const ScanComponent& c) const
   return a.has_feet ? a.undercut >= 0.5F : a.size.width > 1.2F && a.size.length < kCarLength;
 }
 
-bool ComponentJudge::mayHoldPerson(const ScanComponent& c) const
-{
-  constexpr std::uint32_t kFewest = 10;
-  if (c.point_count < kFewest || c.top < 1.2F || c.top > 2.1F) return false;  // sitting to tall
-  return c.top - c.bottom >= 0.5F && c.bottom <= 1.1F && !c.open_top;
-}
-
 bool ComponentJudge::isPersonCutOff(const ScanComponent& part) const
 {
   constexpr float kHalfChest = 0.12F;  // [m] of its depth is seen

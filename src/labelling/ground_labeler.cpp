@@ -95,15 +95,7 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
     shown_of_component_.push_back(judge_.isStructure(c) ? kStructure : kObject);
   const std::vector<std::uint32_t>& component_of = components_.componentOfPart();
   shown_of_part_.assign(component_of.size(), kIgnored);
-  leant_on_.clear();
-  for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
-  {
-    const ScanComponent& candidate = components_.parts()[part];
-    if (judge_.isPerson(candidate))
-      showPerson(part);
-    else if (judge_.mayHoldPerson(candidate) && mayBeStall(component_of[part]))
-      leant_on_.push_back(part);
-  }
+  showPeople();
   components_.cutColumns(cloud, returns_, leant_on_);
   for (auto part = static_cast<std::uint32_t>(shown_of_part_.size()); part < component_of.size(); ++part)
   {
@@ -112,6 +104,21 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
   }
   for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
     if (shown_of_part_[part] == kIgnored) shown_of_part_[part] = shown_of_component_[component_of[part]];
+}
+
+/// Those who are a part; notes the parts that others may lean on.
+void GroundLabeler::showPeople()
+{
+  leant_on_.clear();
+  for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
+  {
+    const ScanComponent& candidate = components_.parts()[part];
+    if (!ComponentJudge::mayHoldPerson(candidate)) continue;
+    if (judge_.isPerson(candidate))
+      showPerson(part);
+    else if (mayBeStall(components_.componentOfPart()[part]))
+      leant_on_.push_back(part);
+  }
 }
 
 /// Sheet metal is no stall, whatever stands out of it.
