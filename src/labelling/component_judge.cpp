@@ -144,14 +144,6 @@ bool ComponentJudge::isVehicle(const ScanComponent& c) const
   return a.has_feet ? a.undercut >= 0.5F : a.size.width > 1.2F && a.size.length < kCarLength;
 }
 
-bool ComponentJudge::mayHoldPerson(const HeightRange& part) const
-{
-  constexpr std::uint32_t kFewest = 10;
-  if (part.point_count < kFewest || part.open_top || part.top < 1.2F || part.top > 2.1F)
-    return false;  // sitting to tall
-  return part.top - part.bottom >= 0.5F && part.bottom <= 1.1F;
-}
-
 bool ComponentJudge::isPersonCutOff(const ScanComponent& part) const
 {
   constexpr float kHalfChest = 0.12F;  // [m] of its depth is seen

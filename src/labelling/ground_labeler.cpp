@@ -58,7 +58,7 @@ void GroundLabeler::label(LabelledCloud& cloud)
     components_.addRow(row, cloud, returns_);
     showGround(cloud, begin, end);
   }
-  components_.finish(cloud, returns_, [this](const HeightRange& part) { return judge_.mayHoldPerson(part); });
+  components_.finish(cloud, returns_, &ComponentJudge::mayHoldPerson);
   judge(cloud);
   for (const std::uint32_t pixel : components_.pixels()) showPart(cloud, pixel);
   for (const std::uint32_t pixel : components_.feet()) showPart(cloud, pixel);
@@ -93,21 +93,27 @@ void GroundLabeler::judge(const LabelledCloud& cloud)
   shown_of_component_.clear();
   for (std::uint32_t i = 0; i < components_.componentCount(); ++i)
     shown_of_component_.push_back(judge_.isStructure(components_.component(i)) ? kStructure : kObject);
-  const std::vector<std::uint32_t>&component_of = components_.componentOfPart(), &apart = components_.partsApart();
   shown_of_part_.assign(components_.partCount(), kIgnored);
-  leant_on_.clear();
-  const std::size_t apart_count = apart.size();
-  for (const std::uint32_t part : apart)
-    if (judge_.isPerson(components_.part(part)))
-      showPerson(part);
-    else if (mayBeStall(component_of[part]))
-      leant_on_.push_back(part);
+  showPeople();
+  const std::vector<std::uint32_t>&component_of = components_.componentOfPart(), &apart = components_.partsApart();
+  std::size_t next = apart.size();
   components_.cutColumns(cloud, returns_, leant_on_);
   shown_of_part_.resize(components_.partCount(), kIgnored);
-  for (std::size_t k = apart_count; k < apart.size(); ++k)
-    if (judge_.isPersonCutOff(components_.part(apart[k]))) showPerson(apart[k]);
+  for (; next < apart.size(); ++next)
+    if (judge_.isPersonCutOff(components_.part(apart[next]))) showPerson(apart[next]);
   for (std::uint32_t part = 0; part < shown_of_part_.size(); ++part)
     if (shown_of_part_[part] == kIgnored) shown_of_part_[part] = shown_of_component_[component_of[part]];
+}
+
+/// Those who are a part; notes the parts that others may lean on.
+void GroundLabeler::showPeople()
+{
+  leant_on_.clear();
+  for (const std::uint32_t part : components_.partsApart())
+    if (judge_.isPerson(components_.part(part)))
+      showPerson(part);
+    else if (mayBeStall(components_.componentOfPart()[part]))
+      leant_on_.push_back(part);
 }
 
 /// Sheet metal is no stall, whatever stands out of it.

@@ -1,5 +1,7 @@
 #pragma once
 
+#include "lidar_panoptic_clustering/core/language.h"
+
 #include <cstdint>
 #include <limits>
 #include <vector>

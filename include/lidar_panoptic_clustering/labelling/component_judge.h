@@ -2,6 +2,7 @@
 
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -43,6 +44,12 @@ StructureBias structureBiasFromName(const std::string& name);
 /// came by underneath, and stands free on both sides: beyond its outline the beams go farther. The same makes a
 /// structure of what is around a person and has nothing of a vehicle: a stall, a bench. What is no larger than a
 /// two-wheeler with its rider is none: there is no room for both.
+///
+/// Who leans on a counter is one part with it. Columns of a part that rise above what is beside them as head and
+/// shoulders do (see ColumnProfile), and above which the beams go farther, are judged as such a person if the component
+/// is structure or too rough for sheet metal. What goes on above, as a trunk in a hedge, and what shows less than half
+/// a chest's depth, as a post and a board, is none. At least half of the outline must stand free, the counter's side
+/// included, so that someone is not found who shows more of himself before the counter than above it.
 class ComponentJudge
 {
 public:
@@ -63,7 +70,12 @@ public:
   /// seen, which a post and what is fixed to it do not show.
   bool isPersonCutOff(const ScanComponent& part) const;
   /// Whether a part may be a person or hold one: it is as high, as low and has as many returns.
-  bool mayHoldPerson(const HeightRange& part) const;
+  static bool mayHoldPerson(const HeightRange& part)
+  {
+    constexpr std::uint32_t kFewest = 10;
+    if (part.point_count < kFewest || part.top < 1.2F || part.top > 2.1F) return false;  // sitting to tall
+    return part.top - part.bottom >= 0.5F && part.bottom <= 1.1F && !part.open_top;
+  }
   /// Whether its surface is no rougher than sheet metal with windows.
   bool isSmooth(const ScanComponent& component) const;
   /// Whether a component that a person was found in is an object nevertheless.

@@ -61,7 +61,7 @@ struct GroundReport
 /// to 12 degrees each way are found in each scan.
 ///
 /// What it cannot tell: a bush from a car of its size, a vehicle that only shows a bare tall side down to the ground
-/// from a wall, and a person who leans on something as high as his shoulders from that thing.
+/// from a wall, and a person who leans on something from that thing, unless he stands above it by head and shoulders.
 ///
 /// Not shared between threads; keeps its memory.
 class GroundLabeler
@@ -96,6 +96,7 @@ public:
 
 private:
   void judge(const LabelledCloud& cloud);
+  void showPeople();
   void showPerson(std::uint32_t part);
   bool mayBeStall(std::uint32_t component) const;
   void showGround(LabelledCloud& cloud, std::size_t begin, std::size_t end);
