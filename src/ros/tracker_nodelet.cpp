@@ -1,10 +1,7 @@
 #include "ros/tracker_nodelet.h"
 
 #include "core/plain_numbers.h"
-#include "ros/cloud_subscription.h"
-#include "ros/load_failure.h"
 #include "ros/object_list.h"
-#include "ros/open_queue.h"
 #include "ros/parameter_server.h"
 
 #include <pcl_conversions/pcl_conversions.h>
@@ -26,134 +23,18 @@ void setCovariance(const Matrix& from, Object::_velocity_covariance_type& to)
 }
 }  // namespace
 
-TrackerNodelet::~TrackerNodelet()
-{
-  {
-    const std::lock_guard<std::mutex> lock(connect_mutex_);
-    closed_ = true;
-  }
-  mailbox_.close();
-  if (thread_.joinable()) thread_.join();
-  // each of these waits for its callback under way; without the lock, which connect() may be waiting for
-  diagnostics_.stop();
-  latched_.stop();
-  frame_.stop();
-  input_.shutdown();
-  output_.shutdown();
-  markers_.shutdown();
-  objects_.shutdown();
-}
-
-void TrackerNodelet::onInit()
-{
-  openQueue(getPrivateNodeHandle());
-  try
-  {
-    load();
-    thread_ = std::thread(&TrackerNodelet::work, this);
-  }
-  catch (const std::exception& error)
-  {
-    NODELET_FATAL("not loaded: %s", error.what());
-    announceLoadFailure(getName(), error.what());
-    throw;
-  }
-  diagnostics_.start(getNodeHandle(), getPrivateNodeHandle(), getName(), [this] { return describeIdle(); });
-  latched_.start(
-      getPrivateNodeHandle(),
-      [this]
-      {
-        const std::lock_guard<std::mutex> lock(connect_mutex_);
-        return input_.getNumPublishers() > 0;
-      },
-      [this](const CloudPtr& cloud) { receive(cloud); });
-  advertise();
-  // who listens already need not wait for the manager to tell of it
-  connect();
-}
-
 void TrackerNodelet::load()
 {
   auto& nh = getPrivateNodeHandle();
-  const ParameterInfo table_info{"class_table", std::string("semantic_kitti"), 0.0, 0.0, {}};
   const std::vector<ParameterInfo> parameters = describeParameters(config_);
-  diagnostics_.setWarning("parameters", warnOfUnusedParameters(nh, namesOf(parameters, {table_info.name})));
+  diagnostics_.setWarning("parameters", warnOfUnusedParameters(nh, namesOf(parameters, {kClassTable})));
   applyParameters(config_, readParameters(nh, parameters));
   if (!config_.fixed_frame.empty() && config_.fixed_frame.front() == '/')
     throw std::invalid_argument("parameter " + nh.resolveName("fixed_frame") +
                                 ": expected a name without a leading slash, got '" + config_.fixed_frame + "'");
-  const ParameterMap given = readParameters(nh, {table_info});
-  table_ = std::make_shared<const ClassTable>(
-      ClassTable::load(std::get<std::string>(given.empty() ? table_info.value : given.at("class_table"))));
+  table_ = loadClassTable();
   tracker_ = std::make_unique<CloudTracker>(table_, config_.tracker);
   frame_.start(nh, config_.fixed_frame, config_.tf_wait_s);
-}
-
-void TrackerNodelet::advertise()
-{
-  // connect() may run in the manager's thread as soon as advertise() is under way: keep it out until all are there
-  const std::lock_guard<std::mutex> lock(connect_mutex_);
-  const ros::SubscriberStatusCallback status = [this](const ros::SingleSubscriberPublisher&) { connect(); };
-  auto& nh = getPrivateNodeHandle();
-  output_ = advertiseAlone<PanopticCloud>(nh, "output", 1, status, status);
-  markers_ = advertiseAlone<visualization_msgs::MarkerArray>(nh, "markers", 1, status, status);
-  objects_.advertise(nh, status);
-}
-
-void TrackerNodelet::connect()
-{
-  const std::lock_guard<std::mutex> lock(connect_mutex_);
-  if (closed_) return;
-  if (listeners() == 0)
-  {
-    input_.shutdown();
-    latched_.forget();
-  }
-  else if (!input_)
-  {
-    diagnostics_.expectScans();
-    input_ = subscribeChecked<PanopticCloud>(
-        getPrivateNodeHandle(), "input", 1,
-        [this](const CloudPtr& cloud, const Arrival& arrival)
-        {
-          diagnostics_.setText("input", describe(arrival));
-          latched_.received(cloud, arrival.latched);
-          receive(cloud);
-        },
-        [this](const std::string& error) { refuse(error); });
-  }
-}
-
-void TrackerNodelet::receive(const CloudPtr& cloud)
-{
-  if (mailbox_.put({cloud, ros::WallTime::now(), ros::Time::now()})) diagnostics_.overwritten();
-}
-
-Idle TrackerNodelet::describeIdle()
-{
-  const std::lock_guard<std::mutex> lock(connect_mutex_);
-  return lidar_panoptic_clustering::describeIdle(
-      listeners(), output_.getTopic() + ", " + markers_.getTopic() + " or " + objects_.topic(), input_);
-}
-
-void TrackerNodelet::refuse(const std::string& error)
-{
-  if (diagnostics_.refused(error)) NODELET_ERROR("%s", error.c_str());
-}
-
-void TrackerNodelet::work()
-{
-  while (const auto scan = mailbox_.take())
-  {
-    try
-    {
-      process(*scan);
-    }
-    catch (const std::exception& error)
-    {
-      refuse("cloud on " + getPrivateNodeHandle().resolveName("input") + " dropped: " + error.what());
-    }
-  }
 }
 
 void TrackerNodelet::process(const Scan& scan)
@@ -164,7 +45,7 @@ void TrackerNodelet::process(const Scan& scan)
   const ros::WallTime start = ros::WallTime::now();
   const auto stamp_us = static_cast<std::int64_t>(stamp.toNSec() / 1000);
   PanopticCloud::Ptr out;
-  if (output_.getNumSubscribers() > 0)
+  if (wantsCloud())
   {
     out = pool_.take();
     tracker_->follow(*scan.cloud, stamp_us, pose, *out);
@@ -173,7 +54,7 @@ void TrackerNodelet::process(const Scan& scan)
     tracker_->follow(*scan.cloud, stamp_us, pose);
   const double follow_ms = (ros::WallTime::now() - start).toSec() * 1e3;
   if (out) output_.publish(pcl::ros_ptr(out));
-  if (markers_.getNumSubscribers() + objects_.listeners() > 0) publishObjects(*scan.cloud);
+  if (wantsObjects()) publishObjects(*scan.cloud);
   warnOfUnknownClasses();
   diagnostics_.setFigure("live tracks", tracker_->liveTracks());
   diagnostics_.processed({{"track", follow_ms}});
@@ -216,7 +97,7 @@ void TrackerNodelet::startAnew()
 Eigen::Isometry3d TrackerNodelet::poseOf(const Scan& scan, ros::Time stamp)
 {
   const FixedFrame::Pose pose =
-      frame_.find(scan.cloud->header.frame_id, stamp, scan.arrival, [this] { return mailbox_.hasNext(); });
+      frame_.find(scan.cloud->header.frame_id, stamp, scan.arrival, [this] { return hasNext(); });
   warn("tf", pose.doubt);
   // what was seen from the sensor has no place in the fixed frame
   if (std::exchange(has_pose_, pose.is_known) != pose.is_known) startAnew();
@@ -227,7 +108,7 @@ void TrackerNodelet::publishObjects(const PanopticCloud& cloud)
 {
   const ObjectArrayPtr list = makeList(cloud);
   objects_.publish(list);
-  if (markers_.getNumSubscribers() > 0)
+  if (wantsMarkers())
     markers_.publish(marker_list_.update(*list, tracker_->list(cloud), tracker_->pose(), ros::Time::now()));
 }
 

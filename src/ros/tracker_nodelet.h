@@ -1,22 +1,16 @@
 #pragma once
 
-#include "lidar_panoptic_clustering/pipeline/cloud_pool.h"
 #include "lidar_panoptic_clustering/tracking/cloud_tracker.h"
 #include "ros/fixed_frame.h"
-#include "ros/latched_input.h"
-#include "ros/mailbox.h"
-#include "ros/object_outputs.h"
-#include "ros/stream_diagnostics.h"
+#include "ros/object_nodelet.h"
 #include "ros/track_markers.h"
 
-#include <nodelet/nodelet.h>
 #include <ros/ros.h>
 
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <thread>
+#include <vector>
 
 namespace lidar_panoptic_clustering
 {
@@ -35,44 +29,26 @@ struct TrackerNodeletConfig
   }
 };
 
-/// ~input PanopticCloud of a cluster nodelet -> ~output the same cloud with ids and colours that stay with an object;
-/// ~objects the list of them with velocities, which also goes out as ~markers and, where vision_msgs was there, as
-/// ~detections; /diagnostics.
+/// The output of a cluster nodelet -> the same cloud with ids and colours that stay with an object, and ~objects with
+/// velocities (see ObjectNodelet).
 ///
 /// Objects are followed in the fixed frame, by tf; where that has none, as seen from the sensor, and the diagnostics
 /// say so. A scan waits for its transform until the next one comes, at most tf_wait_s, and takes the latest there is
-/// then. Clouds go by pointer. Subscribes only while someone listens to an output, and works only on those.
+/// then. Clouds go by pointer. Works only on the outputs that are listened to.
 ///
 /// Scans without a stamp are taken for those of their arrival. Tracks start anew where time jumps back by more than
 /// max_missed_s, and where the transform is there for the first time.
 ///
 /// Parameters: ~class_table, and those of TrackerNodeletConfig.
-class TrackerNodelet : public nodelet::Nodelet
+class TrackerNodelet : public ObjectNodelet<PanopticCloud>
 {
 public:
-  ~TrackerNodelet() override;
+  ~TrackerNodelet() override { shutdown(); }
 
 private:
-  using CloudPtr = boost::shared_ptr<const PanopticCloud>;
-  struct Scan
-  {
-    CloudPtr cloud;
-    ros::WallTime arrival;
-    ros::Time time;
-  };
-
-  void onInit() override;
-  void load();
-  void advertise();
-  void connect();
-  void receive(const CloudPtr& cloud);
-  Idle describeIdle();
-  std::uint32_t listeners() const
-  {
-    return output_.getNumSubscribers() + markers_.getNumSubscribers() + objects_.listeners();
-  }
-  void work();
-  void process(const Scan& scan);
+  void load() override;
+  void process(const Scan& scan) override;
+  void stop() override { frame_.stop(); }
   ros::Time timeOf(const Scan& scan);
   Eigen::Isometry3d poseOf(const Scan& scan, ros::Time stamp);
   void startAnewAfterJump(const std::string& frame, ros::Time stamp);
@@ -81,26 +57,14 @@ private:
   ObjectArrayPtr makeList(const PanopticCloud& cloud);
   void warnOfUnknownClasses();
   void warn(const char* subject, const std::string& doubt);
-  void refuse(const std::string& error);
 
   TrackerNodeletConfig config_;
   std::shared_ptr<const ClassTable> table_;
-  std::unique_ptr<CloudTracker> tracker_;  ///< the thread's own once it runs, as are the next six
-  CloudPool<PanopticCloud> pool_;
+  std::unique_ptr<CloudTracker> tracker_;  ///< the thread's own once it runs, as are the next five
   FixedFrame frame_;
   bool has_pose_ = false;
   ros::Time last_stamp_;
   TrackMarkers marker_list_;
   std::map<std::string, std::string> warned_;  ///< by subject
-  StreamDiagnostics diagnostics_;
-
-  std::mutex connect_mutex_;
-  bool closed_ = false;
-  ros::Publisher output_, markers_;
-  ObjectOutputs objects_;
-  ros::Subscriber input_;
-  LatchedInput<PanopticCloud> latched_;
-  Mailbox<Scan> mailbox_;
-  std::thread thread_;
 };
 }  // namespace lidar_panoptic_clustering
