@@ -32,7 +32,7 @@ struct EchoConfig
 
 /// Logs what some nodelets say of themselves on /diagnostics: that no input comes, that nobody listens, why scans are
 /// refused, why one was not loaded. Their own log stands where their manager runs; this one, in a process of its own
-/// (`nodelet standalone`), stands where it was started.
+/// (`nodelet_manager standalone`), stands where it was started.
 ///
 /// Parameters: those of EchoConfig.
 class DiagnosticsEchoNodelet : public nodelet::Nodelet
