@@ -68,9 +68,9 @@ install_packages() {
   rm -f "$log"
 }
 
-# $1: as of required_packages
+# At once, so that who has to ask for them asks once. $1: as of required_packages, the rest: further packages
 install_dependencies() {
   local required
-  mapfile -t required < <(required_packages "$@")
-  install_packages "${required[@]}"
+  mapfile -t required < <(required_packages "$1")
+  install_packages "${required[@]}" "${@:2}"
 }

@@ -94,6 +94,13 @@ class Scripts(unittest.TestCase):
         self.assertEqual(done.stderr, 'check: error: 2 packages are missing, and this user can install none. Ask for:\n'
                          '  apt-get update && apt-get install -y --no-install-recommends g++ libpcl-dev\n')
 
+    def test_further_packages_stand_in_the_same_list(self):
+        tree = self.copy_scripts('tree')
+        done = self.bash(tree, 'missing_packages() { printf "%s\\n" "$@"; }\nid() { echo 1000; }\n'
+                         'can_use_sudo() { false; }\ninstall_dependencies with_ros catkin-lint')
+        self.assertEqual(done.stderr.count('Ask for:'), 1)
+        self.assertRegex(done.stderr, r'recommends g\+\+ .* catkin-lint\n$')
+
     def test_a_system_without_packages_of_ros_is_told_where_they_come_from(self):
         tree = self.copy_scripts('tree')
         done = self.bash(tree, 'missing_packages() { printf "%s\\n" catkin libpcl-ros-dev; }\nid() { echo 0; }\n'

@@ -27,6 +27,12 @@ float share(std::uint32_t part, std::uint32_t whole)
 {
   return static_cast<float>(part) / static_cast<float>(whole);
 }
+
+/// The share of rough triples; few tell nothing.
+float roughness(const ScanComponent& c)
+{
+  return c.triples >= kFewestTriples ? share(c.rough_triples, c.triples) : 0.0F;
+}
 }  // namespace
 
 const std::vector<std::string>& structureBiasNames()
@@ -53,7 +59,7 @@ struct ComponentJudge::Appearance
         maybe_tall(tall || c.open_top),
         has_feet(c.blocked + c.undercut >= kFewestFeet && kMostHidden * (c.blocked + c.undercut) >= c.hidden),
         undercut(has_feet ? share(c.undercut, c.blocked + c.undercut) : 0.0F),
-        rough(c.triples >= kFewestTriples ? share(c.rough_triples, c.triples) : 0.0F)
+        rough(roughness(c))
   {
   }
 
@@ -132,7 +138,7 @@ bool ComponentJudge::isBehind(const ScanComponent& c, const Appearance& a) const
 
 bool ComponentJudge::isSmooth(const ScanComponent& c) const
 {
-  return Appearance(c).rough <= kSmooth;
+  return roughness(c) <= kSmooth;
 }
 
 bool ComponentJudge::isVehicle(const ScanComponent& c) const
@@ -142,6 +148,13 @@ bool ComponentJudge::isVehicle(const ScanComponent& c) const
   if (!a.maybe_tall && a.size.length < kRiderLength && a.size.width < kRiderWidth) return true;
   if (a.rough > kSmooth) return false;
   return a.has_feet ? a.undercut >= 0.5F : a.size.width > 1.2F && a.size.length < kCarLength;
+}
+
+bool ComponentJudge::mayHoldPerson(const HeightRange& part)
+{
+  constexpr std::uint32_t kFewest = 10;
+  if (part.point_count < kFewest || part.top < 1.2F || part.top > 2.1F) return false;  // sitting to tall
+  return part.top - part.bottom >= 0.5F && part.bottom <= 1.1F && !part.open_top;
 }
 
 bool ComponentJudge::isPersonCutOff(const ScanComponent& part) const
@@ -161,6 +174,6 @@ bool ComponentJudge::isPerson(const ScanComponent& c) const
   const RectangleSize size = c.footprint.smallestRectangle();
   if (size.length < 0.3F || size.length > 1.1F || size.width < 0.05F || size.width > 0.9F) return false;
   if (isBelow(bargain_.least_free, c.free_ends, c.ends)) return false;
-  return c.triples < kFewestTriples || share(c.rough_triples, c.triples) < kMostRough;
+  return roughness(c) < kMostRough;
 }
 }  // namespace lidar_panoptic_clustering

@@ -62,7 +62,7 @@ bool ScanComponents::isFreeAbove(const std::vector<GroundedReturn>& returns,
                                  const std::vector<std::uint32_t>& cut) const
 {
   constexpr float kBehind = 0.3F;  // [m]
-  const std::uint32_t step = highest_first_ ? 0U - columns_ : columns_, size = rows_ * columns_;
+  const std::uint32_t step = 0U - down_, size = rows_ * columns_;
   std::uint32_t free = 0, blocked = 0;
   for (const std::uint32_t pixel : cut)
   {
@@ -105,11 +105,11 @@ void ScanComponents::addCut(const LabelledCloud& cloud, const std::vector<Ground
 void ScanComponents::takeFeet(const std::vector<GroundedReturn>& returns, std::uint32_t from,
                               const std::vector<std::uint32_t>& cut)
 {
-  const std::uint32_t step = highest_first_ ? columns_ : 0U - columns_, size = rows_ * columns_;
+  const std::uint32_t step = down_, size = rows_ * columns_;
   for (const std::uint32_t pixel : cut)
   {
     std::uint32_t under = pixel + step;  // above row 0 it wraps to beyond the last
-    if (under < size && part_of_[under] == kNone) examineFoot(returns, pixel, highest_first_);
+    if (under < size && part_of_[under] == kNone) examineFoot(returns, pixel);
     for (; under < size && part_of_[under] == from; under += step) part_of_[under] = part_of_[pixel];
   }
 }

@@ -67,10 +67,10 @@ void ScanComponents::finish(const LabelledCloud& cloud, const std::vector<Ground
   begin_of_run_.push_back(static_cast<std::uint32_t>(pixels_.size()));
   numberParts(returns);
   joinParts();
-  highest_first_ = isHighestFirst(cloud, returns);
-  examineTops(cloud, highest_first_);
+  down_ = isHighestFirst(cloud, returns) ? columns_ : 0U - columns_;
+  examineTops(cloud);
   setApart(is_apart);
-  examineFeet(returns, highest_first_);
+  examineFeet(returns);
   measureNoise(returns);
   for (std::uint32_t run = 0; run < part_of_run_.size(); ++run) measureRun(cloud, returns, run);
   for (const std::uint32_t part : parts_apart_)
@@ -158,34 +158,34 @@ void ScanComponents::measureNoise(const std::vector<GroundedReturn>& returns)
 
 /// Of the sensor's highest beams, those that do not point down: a scan in which nothing is as high as the sensor does
 /// not tell where they are.
-void ScanComponents::examineTops(const LabelledCloud& cloud, bool highest_first)
+void ScanComponents::examineTops(const LabelledCloud& cloud)
 {
-  const std::uint32_t columns = cloud.width, begin = highest_first ? 0 : (cloud.height - 1) * columns;
+  const std::uint32_t columns = cloud.width, begin = down_ == columns_ ? 0 : (cloud.height - 1) * columns;
   for (std::uint32_t pixel = begin; pixel < begin + columns && cloud.height > 0; ++pixel)
     if (part_of_[pixel] != kNone && cloud.points[pixel].z > 0.0F) heights_[part_of_[pixel]].open_top = true;
 }
 
-void ScanComponents::examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first)
+void ScanComponents::examineFeet(const std::vector<GroundedReturn>& returns)
 {
   feet_.clear();
-  const std::uint32_t step = highest_first ? columns_ : 0U - columns_, size = rows_ * columns_;
+  const std::uint32_t step = down_, size = rows_ * columns_;
   const std::uint32_t* const part_of = part_of_.data();
   for (const std::uint32_t pixel : pixels_)
   {
     const std::uint32_t under = pixel + step;                         // above row 0 it wraps to beyond the last
     if (under >= size || part_of[under] == part_of[pixel]) continue;  // as most are
-    examineFoot(returns, pixel, highest_first);
+    examineFoot(returns, pixel);
   }
 }
 
 /// What the next beams below a return of a part met, down its foot: `pixel` is above the ground.
-void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first)
+void ScanComponents::examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel)
 {
   constexpr float kUnder = 0.15F;  // [m] more than a wall's foot and range noise
   // [m] above the ground at the foot: from the noise of ground and ranges on; what is undercut is seen to be so
   constexpr float kFoot = 0.05F;
   const std::uint32_t part = part_of_[pixel], size = rows_ * columns_;
-  const std::uint32_t step = highest_first ? columns_ : 0U - columns_;
+  const std::uint32_t step = down_;
   const auto isInside = [size](std::uint32_t at) { return at < size; };  // above row 0 it wraps to beyond the last
   bool is_first = true, is_through = false, is_face = true;
   for (std::uint32_t over = pixel, under = pixel, rows = 0;;)

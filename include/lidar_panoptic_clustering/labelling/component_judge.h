@@ -2,7 +2,6 @@
 
 #include "lidar_panoptic_clustering/labelling/scan_components.h"
 
-#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -70,12 +69,7 @@ public:
   /// seen, which a post and what is fixed to it do not show.
   bool isPersonCutOff(const ScanComponent& part) const;
   /// Whether a part may be a person or hold one: it is as high, as low and has as many returns.
-  static bool mayHoldPerson(const HeightRange& part)
-  {
-    constexpr std::uint32_t kFewest = 10;
-    if (part.point_count < kFewest || part.top < 1.2F || part.top > 2.1F) return false;  // sitting to tall
-    return part.top - part.bottom >= 0.5F && part.bottom <= 1.1F && !part.open_top;
-  }
+  static bool mayHoldPerson(const HeightRange& part);
   /// Whether its surface is no rougher than sheet metal with windows.
   bool isSmooth(const ScanComponent& component) const;
   /// Whether a component that a person was found in is an object nevertheless.

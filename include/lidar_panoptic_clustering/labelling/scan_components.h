@@ -127,9 +127,9 @@ private:
   void joinParts();
   void setApart(const std::function<bool(const HeightRange&)>& is_apart);
   void describeApart(std::uint32_t part);
-  void examineTops(const LabelledCloud& cloud, bool highest_first);
-  void examineFeet(const std::vector<GroundedReturn>& returns, bool highest_first);
-  void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel, bool highest_first);
+  void examineTops(const LabelledCloud& cloud);
+  void examineFeet(const std::vector<GroundedReturn>& returns);
+  void examineFoot(const std::vector<GroundedReturn>& returns, std::uint32_t pixel);
   void measureNoise(const std::vector<GroundedReturn>& returns);
   void measureRun(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t run);
   void measurePiece(const LabelledCloud& cloud, const std::vector<GroundedReturn>& returns, std::uint32_t first,
@@ -145,7 +145,8 @@ private:
 
   std::uint32_t rows_ = 0, columns_ = 0;
   Distances distances_{};
-  bool full_turn_ = false, highest_first_ = true;
+  bool full_turn_ = false;
+  std::uint32_t down_ = 0;  ///< from a pixel to that of the next beam below; below the lowest it leads out of the image
   DisjointSets sets_;
   std::vector<std::uint32_t> part_of_;
   std::vector<std::uint32_t> pixels_;        ///< of the returns above the ground, in row-major order
