@@ -203,6 +203,7 @@ TEST_F(BadPoints, DiagnosticsTellRateAndStages)
     ASSERT_TRUE(output.next());
   }
   auto report = diagnostics.waitFor("scans processed", "5");
+  EXPECT_EQ(report["input"], "by pointer from " + ros::this_node::getName());
   for (const char* stage : {"select", "cluster", "refine", "paint"})
     EXPECT_EQ(report.count(std::string(stage) + " [ms]"), 1U) << stage;
   EXPECT_GT(std::stod(report["rate [Hz]"]), 0.0);
