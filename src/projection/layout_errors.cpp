@@ -61,11 +61,12 @@ void throwNoScanLines(const RawCloud& raw, const std::vector<ScanPoint>& points)
 {
   throw std::invalid_argument(
       "expected an organised cloud (rows and columns), or points with a field 'ring', in the order of rings, or of a "
-      "sensor that is named, found one row, " +
-      sequenceOf(points) + ", of " + std::to_string(raw.width * std::size_t{raw.height}) + " points with " +
+      "sensor that is named, found one " +
+      std::string(raw.height == 1 ? "row, " : "column, ") + sequenceOf(points) + ", of " + std::to_string(raw.width * std::size_t{raw.height}) + " points with " +
       describeFields(raw) +
-      ": switch on organised output in the driver (velodyne_pointcloud: organize_cloud:=true), set the parameter "
-      "sensor, or set layout to 'merged' where the lidar has no scan lines (Livox) or the points are several lidars'");
+      ": switch on organised output in the driver (velodyne_pointcloud: organize_cloud:=true; rslidar_sdk: "
+      "dense_points: false), set the parameter sensor, or set layout to 'merged' where the lidar has no scan lines "
+      "(Livox) or the points are several lidars");
 }
 
 void throwNoRing(const RawCloud& raw)

@@ -101,17 +101,19 @@ std::uint32_t RowFinder::byUnfolding(const std::vector<ScanPoint>& scan, std::ui
 void RowFinder::unfold(const std::vector<ScanPoint>& scan, const Sweep& sweep)
 {
   unfolded_rings_ = unfoldScan(scan, sweep, directions_);
-  constexpr std::size_t kStride = 16;
-  constexpr float kSmallStep = 0.2F;  // [rad]
+  constexpr std::size_t kStride = 17;  // no firing has a multiple of it
+  constexpr float kSmallStep = 0.2F;   // [rad]
   const float sense = sweep.clockwise ? -1.0F : 1.0F;
-  forward_ = backward_ = 0;
+  forward_ = backward_ = climbs_ = 0;
   steps_.clear();
   for (std::size_t i = kStride; i < directions_.size(); i += kStride)
   {
     const float step = sense * (directions_[i].azimuth - directions_[i - 1].azimuth);  // NaN goes no way
     forward_ += step > 0.0F && step < kSmallStep;
     backward_ += step < 0.0F && step > -kSmallStep;
-    if (!std::isnan(step)) steps_.push_back(std::abs(sineOfElevation(scan[i]) - sineOfElevation(scan[i - 1])));
+    if (std::isnan(step)) continue;
+    steps_.push_back(std::abs(sineOfElevation(scan[i]) - sineOfElevation(scan[i - 1])));
+    climbs_ += steps_.back() > std::abs(step);
   }
   countElevationSteps(scan);
 }
@@ -141,6 +143,7 @@ bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
   if (rings < 2 || rings > kMostRings) return false;
   if (rows > 0 && (rings > rows || 2 * rings < rows)) return false;
   if (20 * elevation_steps_ < 19 * (rings - 1) || forward_ < 3 * backward_) return false;
+  if (2 * climbs_ > steps_.size()) return false;  // firing after firing
   return order_.isMonotone() || order_.areDistinct();
 }
 

@@ -222,7 +222,7 @@ TEST(OrganizerUnordered, LayoutsThatCannotBeSayWhy)
   EXPECT_NE(errorOf([&] { organized(message); })
                 .find("points with x float32, y float32, z float32, label uint32: switch "
                       "on organised output in the driver (velodyne_pointcloud: "
-                      "organize_cloud:=true), set the parameter sensor, or set layout "
+                      "organize_cloud:=true; rslidar_sdk: dense_points: false), set the parameter sensor, or set layout "
                       "to 'merged'"),
             std::string::npos);
   EXPECT_EQ(

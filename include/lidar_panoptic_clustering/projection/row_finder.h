@@ -43,8 +43,9 @@ public:
                             std::optional<Sweep>& sweep);
 
   /// Whether the points of the scan unfolded last did come ring after ring: they fell into 2 to 256 rings (at most
-  /// `rows` where these are known, and at least half of them), the azimuth goes the sweep's way, the elevation steps
-  /// where rings begin, and their elevations fall or rise all the way, or each ring has one of its own.
+  /// `rows` where these are known, and at least half of them), the azimuth goes the sweep's way and changes more than
+  /// the elevation, that steps where rings begin, and their elevations fall or rise all the way, or each ring has one
+  /// of its own.
   bool cameRingAfterRing(std::uint32_t rows) const;
 
   /// Of the last scan, by point.
@@ -77,6 +78,7 @@ private:
   SweepFinder sweeps_;
   std::uint32_t unfolded_rings_ = 0, elevation_steps_ = 0;  ///< steps: where a ring begins
   std::uint32_t forward_ = 0, backward_ = 0;                ///< small steps in the sense of the sweep, of a sample
+  std::uint32_t climbs_ = 0;                                ///< steps, of it, that go up or down more than along
   std::vector<PointDirection> directions_;
   std::vector<std::uint32_t> returns_of_row_;
   std::vector<float> azimuths_, steps_;
