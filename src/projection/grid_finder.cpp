@@ -1,6 +1,7 @@
 #include "lidar_panoptic_clustering/projection/grid_finder.h"
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 
 namespace lidar_panoptic_clustering
@@ -9,6 +10,12 @@ namespace
 {
 /// Above what a sensor's own beam offsets leave after destaggering, below the least an Ouster's staggered cloud has.
 constexpr double kMaxStaggeredColumns = 2.5;
+
+/// Recorded PandaSet and Ouster clouds have 1, columns in any order nearly 0.
+constexpr double kLeastProgress = 0.5;
+
+/// Halfway between the 370 degrees that drivers put into a scan and the 720 of two. [rad]
+constexpr double kMostTurned = 9.42477796076938;
 
 bool canBeReshaped(const RawCloud& raw)
 {
@@ -42,6 +49,16 @@ bool Grid::isStaggered() const
   return staggered_columns > kMaxStaggeredColumns;
 }
 
+bool Grid::goesOneWay() const
+{
+  return progress > kLeastProgress;
+}
+
+bool Grid::turnsTwice() const
+{
+  return std::abs(turned) > kMostTurned;
+}
+
 const LayoutProbe& GridFinder::look(const RawCloud& raw, const ScanFields& fields)
 {
   probe_.look(raw, fields);
@@ -53,8 +70,17 @@ std::optional<Grid> GridFinder::findDeclared(const RawCloud& raw, const ScanFiel
   probe_.look(raw, fields);
   const auto orientation = probe_.orientation();
   if (!orientation) return std::nullopt;
-  return Grid{false, *orientation, probe_.azimuthStep(*orientation), probe_.elevationStep(*orientation),
-              probe_.staggeredColumns(*orientation)};
+  return gridAs(*orientation);
+}
+
+Grid GridFinder::gridAs(Orientation orientation) const
+{
+  Grid grid;
+  grid.orientation = orientation;
+  grid.azimuth_step = probe_.azimuthStep(orientation), grid.elevation_step = probe_.elevationStep(orientation);
+  grid.staggered_columns = probe_.staggeredColumns(orientation);
+  grid.progress = probe_.progress(orientation), grid.turned = probe_.turned(orientation);
+  return grid;
 }
 
 std::optional<Grid> GridFinder::find(const RawCloud& raw, const ScanFields& fields)

@@ -1,6 +1,7 @@
 #include "projection/layout_errors.h"
 
 #include "lidar_panoptic_clustering/projection/azimuth.h"
+#include "lidar_panoptic_clustering/projection/row_finder.h"
 
 #include <cmath>
 #include <stdexcept>
@@ -40,12 +41,51 @@ std::string sequenceOf(const std::vector<ScanPoint>& points)
   return 2 * climbs > near ? "firing after firing" : "in neighbouring directions";
 }
 
-void throwStaggered(double columns)
+void throwStaggered(double columns, double angle)
 {
-  throw std::invalid_argument(
-      "expected columns of one azimuth, found neighbouring scan lines " + std::to_string(std::lround(columns)) +
-      " columns apart in the mean: switch on destaggering in the driver (ouster_ros: destagger:=true), or set the "
+  constexpr double kMostOfBeams = 0.26;  // 15 degrees; an Ouster's beams look up to 9 degrees aside
+  throw std::invalid_argument("expected columns of one azimuth, found neighbouring scan lines " +
+                              std::to_string(std::lround(columns)) + " columns apart in the mean: " +
+                              (angle < kMostOfBeams
+                                   ? "switch on destaggering in the driver (ouster_ros: destagger:=true)"
+                                   : "publish the cloud in the sensor's own frame") +
+                              ", or set the parameter layout to 'ring', which places the points by their azimuth");
+}
+
+void throwNoSequence()
+{
+  throw NoGrid(
+      "expected columns in the sequence of their azimuth, found that it goes to and fro along the scan lines: set the "
       "parameter layout to 'ring', which places the points by their azimuth");
+}
+
+void throwTurnsTwice(double turned)
+{
+  throw NoGrid("expected at most one turn of the sensor, found columns that span " +
+               std::to_string(std::lround(std::abs(turned) * 57.29577951308232)) +
+               " degrees: publish one scan a message, or set layout to 'merged'");
+}
+
+void throwManyLines(std::uint32_t lines)
+{
+  throw NoGrid("expected at most " + std::to_string(RowFinder::kMaxRings) + " scan lines, found " +
+               std::to_string(lines) +
+               ": set layout to 'merged' where the lidar has no scan lines (RoboSense M1, Livox)");
+}
+
+void throwSharedElevations(const RawCloud& raw)
+{
+  throw NoGrid("expected scan lines that each have an elevation of their own, found " + size(raw) +
+               " in which several share one, as of two lidars or of two returns of each laser: publish them one by "
+               "one, or set layout to 'merged'");
+}
+
+void throwUnsorted(const RawCloud& raw)
+{
+  throw NoGrid(
+      "expected scan lines sorted by elevation, or in the sensor's own frame, in which they can be sorted, found " +
+      size(raw) +
+      " that are neither: publish the cloud in the sensor's frame, or one row of points with a field 'ring'");
 }
 
 void throwTilted(double tilt)
@@ -62,8 +102,8 @@ void throwNoScanLines(const RawCloud& raw, const std::vector<ScanPoint>& points)
   throw std::invalid_argument(
       "expected an organised cloud (rows and columns), or points with a field 'ring', in the order of rings, or of a "
       "sensor that is named, found one " +
-      std::string(raw.height == 1 ? "row, " : "column, ") + sequenceOf(points) + ", of " + std::to_string(raw.width * std::size_t{raw.height}) + " points with " +
-      describeFields(raw) +
+      std::string(raw.height == 1 ? "row, " : "column, ") + sequenceOf(points) + ", of " +
+      std::to_string(raw.width * std::size_t{raw.height}) + " points with " + describeFields(raw) +
       ": switch on organised output in the driver (velodyne_pointcloud: organize_cloud:=true; rslidar_sdk: "
       "dense_points: false), set the parameter sensor, or set layout to 'merged' where the lidar has no scan lines "
       "(Livox) or the points are several lidars");

@@ -28,7 +28,14 @@ public:
 };
 
 /// The following throw std::invalid_argument with what was expected and what was found.
-[[noreturn]] void throwStaggered(double columns);
+/// `columns`: that the same azimuth is apart in neighbouring scan lines, `angle`: what they span [rad].
+[[noreturn]] void throwStaggered(double columns, double angle);
+[[noreturn]] void throwNoSequence();
+/// `turned`: what the columns span [rad].
+[[noreturn]] void throwTurnsTwice(double turned);
+[[noreturn]] void throwManyLines(std::uint32_t lines);
+[[noreturn]] void throwUnsorted(const RawCloud& raw);
+[[noreturn]] void throwSharedElevations(const RawCloud& raw);
 /// `tilt`: of the sensor's axis against the cloud's z [rad].
 [[noreturn]] void throwTilted(double tilt);
 /// `points`: of the cloud, as sent.

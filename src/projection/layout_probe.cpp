@@ -92,6 +92,11 @@ void LayoutProbe::Direction::add(std::size_t line, const Pixel& here, const Pixe
   ++count;
 }
 
+double LayoutProbe::Direction::signedAzimuth() const
+{
+  return std::accumulate(pairs.begin(), pairs.end(), 0.0, [](double sum, const Pair& p) { return sum + p.azimuth; });
+}
+
 void LayoutProbe::look(const RawCloud& cloud, const ScanFields& fields)
 {
   has_ring_ = fields.ring != nullptr;
@@ -162,6 +167,18 @@ double LayoutProbe::elevationStep(Orientation orientation) const
 {
   const Direction& d = along(orientation);
   return d.count > 0 ? d.meanElevation() : 0.0;
+}
+
+double LayoutProbe::progress(Orientation orientation) const
+{
+  const Direction& d = along(orientation);
+  return enough() && d.azimuth > 0.0 ? std::abs(d.signedAzimuth()) / d.azimuth : 1.0;
+}
+
+double LayoutProbe::turned(Orientation orientation) const
+{
+  const Direction& d = along(orientation);
+  return enough() ? d.signedAzimuth() / static_cast<double>(d.count) * static_cast<double>(d.pairs.size()) : 0.0;
 }
 
 double LayoutProbe::agreement(Orientation orientation, const std::vector<std::uint32_t>& row_of_line) const

@@ -52,6 +52,9 @@ Grid Organizer::gridOf(const RawCloud& raw, const ScanFields& fields, OrganizedS
     grid.orientation = assumedOrientation(raw);
     if (climbs(grid_.probe(), grid.orientation)) throwNoGrid(raw, readAll(raw, fields, out));
   }
+  const std::uint32_t lines =
+      (grid.orientation == Orientation::kRowsAreRings) != grid.reshaped ? raw.height : raw.width;
+  if (lines > RowFinder::kMaxRings) throwManyLines(lines);
   decision.found.orientation = grid.orientation;
   decision.found.reshaped = grid.reshaped;
   decision.firm = false;
@@ -64,8 +67,8 @@ Organizer::Decision Organizer::decideRows(const RawCloud& raw, const ScanFields&
   out.layout = decision.found.layout = Layout::kOrganized;
   out.points.clear();
   const Grid grid = gridOf(raw, fields, out, decision);
-  if (grid.isStaggered()) refuseStaggered(raw, fields, out, grid);
   const RawCloud view = grid.reshaped ? reshapedView(raw) : raw;
+  if (grid.isStaggered() || !grid.goesOneWay() || grid.turnsTwice()) refuseColumns(raw, fields, out, grid);
   decision.placement.orientation = grid.orientation;
   placeRows(view, fields, decision.placement, out);
   decision.found.rows = linesOf(view, grid.orientation);
@@ -82,13 +85,15 @@ Organizer::Decision Organizer::decideRows(const RawCloud& raw, const ScanFields&
 }
 
 /// Azimuths about the cloud's z mean little where that lies far from the sensor's axis.
-void Organizer::refuseStaggered(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, const Grid& grid)
+void Organizer::refuseColumns(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, const Grid& grid)
 {
   constexpr double kTilted = 0.6;  // [rad]
   const std::uint32_t width = grid.reshaped ? raw.height : raw.width;
   const double tilt = grid_.orderLines(readAll(raw, fields, out), width, grid.orientation).tiltRad();
   if (tilt > kTilted) throwTilted(tilt);
-  throwStaggered(grid.staggered_columns);
+  if (!grid.goesOneWay()) throwNoSequence();
+  if (grid.turnsTwice()) throwTurnsTwice(grid.turned);
+  throwStaggered(grid.staggered_columns, grid.staggered_columns * grid.azimuth_step);
 }
 
 void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& decision)
@@ -96,6 +101,7 @@ void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& d
   FoundLayout& found = decision.found;
   const RingOrder& order = grid_.orderLines(out.points, view.width, found.orientation);
   if (order.tellsNothing() && found.doubt.empty()) throwNoGrid(view, out.points);
+  if (order.shareElevations()) throwSharedElevations(view);
   const bool clear = order.isMonotone() || order.areDistinct();
   if (found.reshaped && !clear) throwNoGrid(view, out.points);
   if (clear)
@@ -106,8 +112,11 @@ void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& d
   {
     decision.placement.row_of_line.resize(found.rows);
     std::iota(decision.placement.row_of_line.begin(), decision.placement.row_of_line.end(), 0U);
-    const bool held_lowest_first = decision_.found.known() && decision_.found.line_order == LineOrder::kLowestFirst;
-    if (!grid_.probe().highestFirst(found.orientation).value_or(!held_lowest_first))
+    const auto highest_first = grid_.probe().highestFirst(found.orientation);
+    const bool held = decision_.found.known();
+    if (order.jumpsBack() || (!highest_first && !held && grid_.probe().enough())) throwUnsorted(view);
+    const bool held_lowest_first = held && decision_.found.line_order == LineOrder::kLowestFirst;
+    if (!highest_first.value_or(!held_lowest_first))
       std::reverse(decision.placement.row_of_line.begin(), decision.placement.row_of_line.end());
   }
   const auto& rows = decision.placement.row_of_line;
@@ -134,9 +143,9 @@ void Organizer::followRows(const RawCloud& raw, const ScanFields& fields, Organi
   {
     const auto orientation = probe.orientation();
     if (orientation && *orientation != found.orientation && found.doubt.empty()) contradicts("rows and columns");
-    if (Grid{false, found.orientation, 0.0, 0.0, probe.staggeredColumns(found.orientation)}.isStaggered() &&
-        orientation == found.orientation)
-      contradicts("staggered columns");
+    const Grid grid = grid_.gridAs(found.orientation);
+    if (orientation == found.orientation && (grid.isStaggered() || !grid.goesOneWay() || grid.turnsTwice()))
+      contradicts("columns");
     if (!decision_.placement.row_of_line.empty()
             ? probe.agreement(found.orientation, decision_.placement.row_of_line) < kLeastAgreement
             : !probe.highestFirst(found.orientation).value_or(true))

@@ -8,6 +8,12 @@
 
 namespace lidar_panoptic_clustering
 {
+namespace
+{
+constexpr double kLeastSpacing = 5e-4;  // of rings: 0.03 degrees, a third of the finest sensor's
+constexpr std::uint32_t kFewest = 200;  // returns that tell something
+}  // namespace
+
 void RingOrder::look(const std::vector<ScanPoint>& scan, const std::vector<PointDirection>& directions,
                      std::uint32_t rings, bool remember)
 {
@@ -129,6 +135,13 @@ bool RingOrder::isMonotone() const
   return 10 * std::max(falls_, rises_) >= 9 * steps && back < 0.25 * (highest_ - lowest_);
 }
 
+bool RingOrder::jumpsBack() const
+{
+  constexpr double kJump = 0.1;  // of the sine: six degrees
+  const double back = falls_ > rises_ ? largest_rise_ : largest_fall_;
+  return returns() >= kFewest && back > kJump && back > 0.4 * (highest_ - lowest_);
+}
+
 /// The mean scatter within a ring against the spacing of the rings.
 bool RingOrder::canBeSorted() const
 {
@@ -137,7 +150,6 @@ bool RingOrder::canBeSorted() const
 
 bool RingOrder::areDistinct() const
 {
-  constexpr double kLeastSpacing = 5e-4;  // 0.03 degrees, a third of the finest sensor's
   if (!canBeSorted()) return false;
   sorted_.clear();
   for (const Ring& ring : rings_)
@@ -149,9 +161,19 @@ bool RingOrder::areDistinct() const
   return 5 * apart >= 4 * (sorted_.size() - 1);
 }
 
+std::uint32_t RingOrder::returns() const
+{
+  return std::accumulate(rings_.begin(), rings_.end(), 0U, [](std::uint32_t n, const Ring& r) { return n + r.count; });
+}
+
+bool RingOrder::shareElevations() const
+{
+  if (seen_ < 2 || returns() < kFewest || isMonotone() || areDistinct()) return false;
+  return scatter_ < 0.5 * std::max((highest_ - lowest_) / (seen_ - 1), kLeastSpacing);
+}
+
 bool RingOrder::tellsNothing() const
 {
-  constexpr std::uint32_t kFewest = 200;
   constexpr double kNoVariance = 4e-4;  // of the sine, squared: a degree
   double within = 0.0, sum = 0.0, sum_of_squares = 0.0;
   std::uint32_t count = 0;

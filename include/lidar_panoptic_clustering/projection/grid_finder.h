@@ -20,8 +20,13 @@ struct Grid
   Orientation orientation = Orientation::kRowsAreRings;  ///< after what `reshaped` says
   double azimuth_step = 0.0, elevation_step = 0.0;       ///< along the scan lines, see LayoutProbe
   double staggered_columns = 0.0;                        ///< see LayoutProbe
+  double progress = 1.0, turned = 0.0;                   ///< see LayoutProbe
   /// Whether rows are no scan lines of one azimuth a column.
   bool isStaggered() const;
+  /// Whether neighbouring columns are neighbours in azimuth.
+  bool goesOneWay() const;
+  /// Whether the columns are more than one scan. A driver's scan may be some degrees longer than a turn.
+  bool turnsTwice() const;
   /// Whether what is taken for a scan line turns more than it climbs.
   bool goesAlongLines() const { return elevation_step < azimuth_step; }
 };
@@ -42,6 +47,9 @@ public:
 
   /// What find() finds, of the cloud as declared alone.
   std::optional<Grid> findDeclared(const RawCloud& raw, const ScanFields& fields);
+
+  /// The grid whose orientation is known, by what was looked at last.
+  Grid gridAs(Orientation orientation) const;
 
   /// Of what was looked at last.
   const LayoutProbe& probe() const { return probe_; }

@@ -45,6 +45,12 @@ public:
   /// azimuth, as in a tilted frame, cancels. 0 where hardly anything returned.
   double staggeredColumns(Orientation orientation) const;
 
+  /// How far the azimuth gets along the scan lines, of the way that it goes: 1 where columns follow each other in
+  /// azimuth, near 0 where they lie in no sequence or go to and fro. 1 too where hardly anything returned.
+  double progress(Orientation orientation) const;
+  /// The angle that the columns span, by the mean step of the azimuth, signed [rad]. 0 where hardly anything returned.
+  double turned(Orientation orientation) const;
+
   /// Whether enough returns have neighbours, either way, for the figures to mean something.
   bool enough() const;
 
@@ -76,6 +82,7 @@ private:
     void reset(std::size_t lines);
     void add(std::size_t line, const Pixel& here, const Pixel& there);
     double meanElevation() const { return elevation / static_cast<double>(count); }
+    double signedAzimuth() const;  ///< sum of signed differences
   };
 
   void gather(const RawCloud& cloud, const ScanFields& fields, std::size_t stride);

@@ -105,8 +105,7 @@ private:
   Decision takeInOrder(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
 
   Grid gridOf(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, Decision& decision);
-  [[noreturn]] void refuseStaggered(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out,
-                                    const Grid& grid);
+  [[noreturn]] void refuseColumns(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out, const Grid& grid);
   void orderLines(const RawCloud& view, OrganizedScan& out, Decision& decision);
   void followRows(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);
   void followPoints(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out);

@@ -36,8 +36,16 @@ public:
   /// come one after another. Nine in ten steps go that way, and none goes back by a quarter of the whole.
   bool isMonotone() const;
 
+  /// Whether somewhere the elevation goes back from one ring to the next by much of the whole, as in rings that lie in
+  /// the sequence they fire, or of two lidars one after another.
+  bool jumpsBack() const;
+
   /// Whether hardly any two rings share an elevation, and each keeps to its own: the mark of rings in any sequence.
   bool areDistinct() const;
+
+  /// Whether rings that each keep to an elevation share it with others: of several lidars, or of several returns of
+  /// each laser. False where there are too few returns to tell.
+  bool shareElevations() const;
 
   /// Whether a ring says nothing about the elevation: that varies within a ring as it does in the whole scan, where it
   /// does so at all. False where there are too few returns to tell.
@@ -63,6 +71,7 @@ private:
   void recall();
   void lookAlong(const Eigen::Vector3d& axis);
   void countSteps();
+  std::uint32_t returns() const;  ///< that were looked at
   Eigen::Matrix3d scatterWithinRings() const;
   Eigen::Vector3d axisOfRings() const;
   bool canBeSorted() const;
