@@ -172,7 +172,9 @@ std::string LabelNumbering::fittingTables() const
   }
   std::string names;
   for (const auto& [road, name] : by_road) names += (names.empty() ? "'" : ", '") + name + "'";
-  if (names.empty()) return "; none of the tables that ship fits the ids so far (" + seenIds() + ")";
+  if (names.empty())
+    return "; none of the tables that ship fits the ids so far (" + seenIds() +
+           "): write one of your own and set label_table to its path";
   return "; the ids so far (" + seenIds() + ") fit " + names + ": set label_table";
 }
 
