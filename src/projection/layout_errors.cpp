@@ -88,6 +88,13 @@ void throwUnsorted(const RawCloud& raw)
       " that are neither: publish the cloud in the sensor's frame, or one row of points with a field 'ring'");
 }
 
+void throwUnsortedRings()
+{
+  throw std::invalid_argument(
+      "expected rings numbered by their elevation, or in the sensor's own frame, in which they can be sorted, found "
+      "neither: publish the cloud in the sensor's frame");
+}
+
 void throwTilted(double tilt)
 {
   throw std::invalid_argument(

@@ -35,6 +35,7 @@ public:
 [[noreturn]] void throwTurnsTwice(double turned);
 [[noreturn]] void throwManyLines(std::uint32_t lines);
 [[noreturn]] void throwUnsorted(const RawCloud& raw);
+[[noreturn]] void throwUnsortedRings();
 [[noreturn]] void throwSharedElevations(const RawCloud& raw);
 /// `tilt`: of the sensor's axis against the cloud's z [rad].
 [[noreturn]] void throwTilted(double tilt);

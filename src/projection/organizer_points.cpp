@@ -89,7 +89,10 @@ Organizer::Decision Organizer::decideRings(const RawCloud& raw, const ScanFields
   {
     readRings(raw, fields, found, out);
   }
-  place(rows_.byRing(out.points, ring_of_point_, lines), decision, out);
+  const std::uint32_t rows = rows_.byRing(out.points, ring_of_point_, lines);
+  const RingOrder& order = rows_.order();
+  if (!order.isMonotone() && !order.areDistinct() && order.goesNoWay()) throwUnsortedRings();
+  place(rows, decision, out);
   found.line_order = sequenceOf(rows_.order());
   return decision;
 }

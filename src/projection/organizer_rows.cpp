@@ -114,7 +114,7 @@ void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& d
     std::iota(decision.placement.row_of_line.begin(), decision.placement.row_of_line.end(), 0U);
     const auto highest_first = grid_.probe().highestFirst(found.orientation);
     const bool held = decision_.found.known();
-    if (order.jumpsBack() || (!highest_first && !held && grid_.probe().enough())) throwUnsorted(view);
+    if (order.goesNoWay() || (!highest_first && !held && grid_.probe().enough())) throwUnsorted(view);
     const bool held_lowest_first = held && decision_.found.line_order == LineOrder::kLowestFirst;
     if (!highest_first.value_or(!held_lowest_first))
       std::reverse(decision.placement.row_of_line.begin(), decision.placement.row_of_line.end());

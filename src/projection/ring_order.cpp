@@ -135,11 +135,27 @@ bool RingOrder::isMonotone() const
   return 10 * std::max(falls_, rises_) >= 9 * steps && back < 0.25 * (highest_ - lowest_);
 }
 
-bool RingOrder::jumpsBack() const
+/// Of rings in any sequence, a third and more go back against those a quarter of all before (as RoboSense fires), or
+/// the way from ring to ring is many times the whole (as lasers fire in turn). In the vehicle's frame, where neighbours
+/// go to and fro, sorted ones have 0 and at most 2.1 times.
+bool RingOrder::goesNoWay() const
 {
-  constexpr double kJump = 0.1;  // of the sine: six degrees
-  const double back = falls_ > rises_ ? largest_rise_ : largest_fall_;
-  return returns() >= kFewest && back > kJump && back > 0.4 * (highest_ - lowest_);
+  constexpr int kFewestRings = 4;
+  constexpr double kLeastMajority = 0.8, kLongestWay = 4.0;
+  if (seen_ < kFewestRings || returns() < kFewest) return false;
+  means_.clear();
+  for (const Ring& ring : rings_)
+    if (ring.count > 0) means_.push_back(ring.mean);
+  const std::size_t lag = means_.size() / 4, pairs = means_.size() - lag;
+  std::size_t falls = 0;
+  double way = 0.0;
+  for (std::size_t i = 1; i < means_.size(); ++i)
+  {
+    way += std::abs(means_[i] - means_[i - 1]);
+    falls += i >= lag && means_[i] < means_[i - lag];
+  }
+  return static_cast<double>(std::max(falls, pairs - falls)) < kLeastMajority * static_cast<double>(pairs) ||
+         way > kLongestWay * (highest_ - lowest_);
 }
 
 /// The mean scatter within a ring against the spacing of the rings.
@@ -151,14 +167,14 @@ bool RingOrder::canBeSorted() const
 bool RingOrder::areDistinct() const
 {
   if (!canBeSorted()) return false;
-  sorted_.clear();
+  means_.clear();
   for (const Ring& ring : rings_)
-    if (ring.count > 0) sorted_.push_back(ring.mean);
-  std::sort(sorted_.begin(), sorted_.end());
+    if (ring.count > 0) means_.push_back(ring.mean);
+  std::sort(means_.begin(), means_.end());
   std::size_t apart = 0;
-  for (std::size_t i = 1; i < sorted_.size(); ++i)
-    apart += sorted_[i] - sorted_[i - 1] > std::max(kLeastSpacing, scatter_);
-  return 5 * apart >= 4 * (sorted_.size() - 1);
+  for (std::size_t i = 1; i < means_.size(); ++i)
+    apart += means_[i] - means_[i - 1] > std::max(kLeastSpacing, scatter_);
+  return 5 * apart >= 4 * (means_.size() - 1);
 }
 
 std::uint32_t RingOrder::returns() const

@@ -198,15 +198,19 @@ TEST_P(OrganizerFrames, GiveTheRightRowsOrARefusal)
     moveTo(mount, scan);
     for (const auto channels :
          {Channels::kHighestFirst, Channels::kLowestFirst, Channels::kRoboSense, Channels::kAlternating})
-      for (const auto& [declared, laid] : {std::pair(Declared::kRingsByFirings, Laid::kRingAfterRing),
-                                           std::pair(Declared::kFiringsByRings, Laid::kFiringAfterFiring)})
+      for (const auto& [declared, laid, ring] :
+           {std::tuple(Declared::kRingsByFirings, Laid::kRingAfterRing, RingField::kNone),
+            std::tuple(Declared::kFiringsByRings, Laid::kFiringAfterFiring, RingField::kNone),
+            std::tuple(Declared::kOneRowDense, Laid::kFiringAfterFiring, RingField::kFromTheBottom),
+            std::tuple(Declared::kOneRowDense, Laid::kFiringAfterFiring, RingField::kChannel)})
       {
-        const auto cloud = cloudOf(scan, {channels, laid, declared, RingField::kNone});
+        const auto cloud = cloudOf(scan, {channels, laid, declared, ring});
         Organizer organizer(withoutLabels());
         const std::string error = errorOf([&] { organizer.organize(cloud.message.view(), image); });
         const bool sorted = channels == Channels::kHighestFirst || channels == Channels::kLowestFirst;
         const std::string text = GetParam() + " at " + std::to_string(mount[0]) + ' ' + std::to_string(mount[1]) + ' ' +
-                                 std::to_string(mount[2]) + " channels " + std::to_string(static_cast<int>(channels));
+                                 std::to_string(mount[2]) + " channels " + std::to_string(static_cast<int>(channels)) +
+                                 " declared " + std::to_string(static_cast<int>(declared));
         ++(error.empty() ? taken : refused);
         if (mount == Mount{0, 0, 0} || (sorted && mount[0] == 0.0 && std::abs(mount[1]) < 0.5 && mount[2] < 0.2))
         {

@@ -30,6 +30,13 @@ void writeBag(const std::string& path)
   }
 }
 
+/// The messages that gencpp 0.6.2 makes have no operator==.
+std::string bytesOf(const Object& object)
+{
+  const ros::SerializedMessage message = ros::serialization::serializeMessage(object);
+  return {reinterpret_cast<const char*>(message.buf.get()), message.num_bytes};
+}
+
 class TrackerBag : public Graph
 {
 };
@@ -70,7 +77,7 @@ TEST_F(TrackerBag, PlayedTwiceGivesEqualResults)
       Object a = first.objects[k], b = second.objects[k];
       first_ids.insert(a.track_id), second_ids.insert(b.track_id);
       a.track_id = b.track_id = 0;
-      EXPECT_EQ(a, b) << "scan " << i << "\n" << a << "\n" << b;
+      EXPECT_TRUE(bytesOf(a) == bytesOf(b)) << "scan " << i << "\n" << a << "\n" << b;
     }
   }
   EXPECT_EQ(first_ids.size(), 2U);

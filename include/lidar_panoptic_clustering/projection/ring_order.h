@@ -36,9 +36,9 @@ public:
   /// come one after another. Nine in ten steps go that way, and none goes back by a quarter of the whole.
   bool isMonotone() const;
 
-  /// Whether somewhere the elevation goes back from one ring to the next by much of the whole, as in rings that lie in
-  /// the sequence they fire, or of two lidars one after another.
-  bool jumpsBack() const;
+  /// Whether the elevations neither fall nor rise through the scan, though neighbours may go to and fro, as those of
+  /// sorted rings do in a frame that is not the sensor's. False where there are too few returns to tell.
+  bool goesNoWay() const;
 
   /// Whether hardly any two rings share an elevation, and each keeps to its own: the mark of rings in any sequence.
   bool areDistinct() const;
@@ -81,7 +81,7 @@ private:
   int falls_ = 0, rises_ = 0, seen_ = 0;  ///< steps from one ring that was seen to the next
   double largest_fall_ = 0.0, largest_rise_ = 0.0, lowest_ = 0.0, highest_ = 0.0, scatter_ = 0.0, tilt_ = 0.0;
   std::vector<std::uint32_t> row_of_ring_, ring_of_row_;
-  std::vector<double> elevation_;  ///< by ring; of rings not seen, the one before's
-  mutable std::vector<double> sorted_;
+  std::vector<double> elevation_;      ///< by ring; of rings not seen, the one before's
+  mutable std::vector<double> means_;  ///< of the rings that were seen
 };
 }  // namespace lidar_panoptic_clustering
