@@ -71,7 +71,8 @@ class Page:
         width = 0.8 / max(1, len(series))
         for index, (name, values) in enumerate(series.items()):
             places = [c + (index + 0.5) * width - 0.4 for c in range(len(categories))]
-            self.axes.bar(places, values, 0.94 * width, color=color_of(index), label=name)
+            if places:  # Matplotlib 3.1 cannot name bars that are none
+                self.axes.bar(places, values, 0.94 * width, color=color_of(index), label=name)
             for place, value in zip(places, values):
                 if decimals is not None:
                     self._write(place, value, f"{value:,.{decimals}f}", width)

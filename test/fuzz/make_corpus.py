@@ -106,6 +106,7 @@ def corpus():
         yield 'clusterers', algorithm + '_wild', scan(algorithm, 2, 12, 0, [
             (math.nan, 1, 1), (math.inf, 1, 1), (9999, 9, 0), (-9999, -9, 0), (1e-30, 0, 0), (1e30, 1, 1), (0, 0, 5)])
     yield 'clusterers', 'supervoxel_without_voxels', scan('supervoxel', 1, 0, 0, OVERFLOW)
+    yield 'clusterers', 'supervoxel_border', scan('supervoxel', 1, 0, 0, [(-4, -8, .5), (-3, -8e-23, .5)])  # PCL 1.10
     yield 'clusterers', 'tiny_distance', scan('birds_eye', 1, 1, 0, [(-70.00003, 3, 0), (1412.8, 3, 0)])
     xyz_label = [(0, 0, 7), (1, 4, 7), (2, 8, 7), (5, 12, 6)]
     points = [(x, y, z, (10, 252, 30, 18, 40, 7)[int(c)]) for x, y, z, c in street(4, 40)]

@@ -113,6 +113,22 @@ TEST(ClustererContract, SupervoxelsThatLoseAllTheirVoxelsAreNotCounted)
   for (const auto& p : out.points) EXPECT_NE(p.instance, 0U);
 }
 
+/// A point at nearly 0 and others a multiple of the seeds' distance away: PCL 1.10's octree ended the program.
+TEST(ClustererContract, SupervoxelsOfPointsAtTheOctreesBorder)
+{
+  SupervoxelClusterer clusterer;
+  for (const float nothing : {-8e-23F, 8e-23F, -6e-16F, 6e-16F, -1e-9F, 1e-7F})
+    for (const float away : {-8.0F, -16.0F, -24.0F, -48.0F, 8.0F, 16.0F})
+      for (const float aside : {-12.0F, -5.0F, -3.0F, 4.0F})
+        for (int axis = 0; axis < 3; ++axis)
+        {
+          float p[2][3] = {{-4.0F, away, 0.5F}, {aside, nothing, 0.5F}};
+          for (auto& point : p) std::rotate(point, point + axis, point + 3);
+          expectContract(clusterer,
+                         rowOf({labelled(p[0][0], p[0][1], p[0][2], kCar), labelled(p[1][0], p[1][1], p[1][2], kCar)}));
+        }
+}
+
 TEST(ClustererContract, SparseReturnsWithSmallSeeds)
 {
   std::mt19937 random(5);
