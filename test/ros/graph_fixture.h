@@ -158,7 +158,8 @@ public:
         [&]
         {
           while (const auto message = probe_.takeIfThere())
-            if ((text = message->msg).find(part) != std::string::npos && (node.empty() || message->name == node))
+            if (message->header.stamp >= since_ && (text = message->msg).find(part) != std::string::npos &&
+                (node.empty() || message->name == node))
               return true;
           return false;
         });
@@ -167,6 +168,7 @@ public:
   }
 
 private:
+  const ros::Time since_ = ros::Time::now();  // /rosout of roscpp 1.14 is latched
   Probe<rosgraph_msgs::Log> probe_;
 };
 
