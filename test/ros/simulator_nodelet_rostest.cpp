@@ -104,12 +104,9 @@ TEST_F(SimulatorGraph, RefusesToLoadWithAParameterItCannotUse)
 {
   const auto refusal = [this]
   {
-    Probe<rosgraph_msgs::Log> log("/rosout");
-    EXPECT_TRUE(eventually([&] { return log.subscriber().getNumPublishers() > 0; }));
+    LogProbe log;
     EXPECT_FALSE(start());
-    for (auto message = log.next(); message; message = log.next())
-      if (message->level == rosgraph_msgs::Log::FATAL) return message->msg;
-    return std::string();
+    return log.waitFor("not loaded");
   };
   ros::param::set(name_ + "/traffic_density", 1.5);
   EXPECT_NE(refusal().find("'traffic_density': expected a number from 0 to 1, got 1.5"), std::string::npos);
