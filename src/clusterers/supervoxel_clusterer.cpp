@@ -57,11 +57,10 @@ private:
 };
 
 /// PCL's octree ends the program where a point is nearer to its border than a double tells apart at the distance from
-/// the other one, as 1e-15 m is: what a sensor computes for the sine of a half turn. Nothing is lost below a tenth of a
-/// millimetre.
+/// the other one, as 1e-15 m is: what a sensor computes for the sine of a half turn.
 float withoutDust(float metres)
 {
-  constexpr float kDust = 6.1e-5F;
+  constexpr float kDust = 1e-9F;
   return std::abs(metres) < kDust ? 0.0F : metres;
 }
 }  // namespace
