@@ -10,7 +10,7 @@
 
 namespace lidar_panoptic_clustering
 {
-void ClusterNodelet::load()
+ClusterNodelet::Work ClusterNodelet::load()
 {
   auto& nh = getPrivateNodeHandle();
   // the raw parameters first: the dynamic_reconfigure server clamps what is out of range without a word
@@ -24,6 +24,7 @@ void ClusterNodelet::load()
       "parameters", warnOfUnusedParameters(nh, namesOf(algorithmParameters(algorithm_), {kClassTable}), of_others));
   pipeline_ = std::make_unique<FramePipeline>(table, algorithm.pipeline, std::move(algorithm.clusterer));
   startReconfigure();
+  return [this](const Scan& scan) { process(scan); };
 }
 
 void ClusterNodelet::advertiseMore()

@@ -38,9 +38,9 @@ protected:
   void reconfigure(const dynamic_reconfigure::Config& message);
 
 private:
-  void load() final;
+  Work load() final;
   void advertiseMore() final;
-  void process(const Scan& scan) final;
+  void process(const Scan& scan);
   void stop() final;
   void publishObjects(const pcl::PCLHeader& header);
   void publishStages(const pcl::PCLHeader& header, const StreamDiagnostics::StageMilliseconds& stages);

@@ -14,8 +14,7 @@ void ObjectNodelet<Cloud>::onInit()
   openQueue(getPrivateNodeHandle());
   try
   {
-    load();
-    thread_ = std::thread([this] { work(); });
+    thread_ = std::thread([this, work = load()] { run(work); });
   }
   catch (const std::exception& error)
   {
@@ -125,13 +124,13 @@ void ObjectNodelet<Cloud>::refuse(const std::string& error)
 }
 
 template <class Cloud>
-void ObjectNodelet<Cloud>::work()
+void ObjectNodelet<Cloud>::run(const Work& work)
 {
   while (const auto scan = mailbox_.take())
   {
     try
     {
-      process(*scan);
+      work(*scan);
     }
     catch (const std::exception& error)
     {

@@ -12,6 +12,7 @@
 #include <nodelet/nodelet.h>
 #include <ros/ros.h>
 
+#include <functional>
 #include <memory>
 #include <mutex>
 #include <string>
@@ -38,16 +39,18 @@ protected:
     ros::Time time;  ///< of arrival
   };
 
+  /// Works on a scan, in the nodelet's thread. What is thrown is why the scan is dropped. No virtual function: what one
+  /// calls changes with each destructor that begins, while the thread still runs.
+  using Work = std::function<void(const Scan& scan)>;
+
   /// Reads the parameters; nothing runs yet. What is thrown is why the nodelet is not loaded.
-  virtual void load() = 0;
+  virtual Work load() = 0;
   /// Advertises what only this nodelet has.
   virtual void advertiseMore() {}
-  /// Works on a scan, in the nodelet's thread. What is thrown is why the scan is dropped.
-  virtual void process(const Scan& scan) = 0;
   /// Stops what else calls back, once the thread has ended.
   virtual void stop() {}
 
-  /// To be called at the beginning of the most derived destructor: ends the thread and all callbacks.
+  /// Ends the thread and all callbacks: to be called by the destructor of the last class that has members.
   void shutdown();
 
   bool wantsCloud() const { return output_.getNumSubscribers() > 0; }
@@ -76,7 +79,7 @@ private:
     return output_.getNumSubscribers() + markers_.getNumSubscribers() + objects_.listeners();
   }
   void refuse(const std::string& error);
-  void work();
+  void run(const Work& work);
 
   std::mutex connect_mutex_;
   bool closed_ = false;

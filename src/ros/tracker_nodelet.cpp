@@ -23,7 +23,7 @@ void setCovariance(const Matrix& from, Object::_velocity_covariance_type& to)
 }
 }  // namespace
 
-void TrackerNodelet::load()
+TrackerNodelet::Work TrackerNodelet::load()
 {
   auto& nh = getPrivateNodeHandle();
   const std::vector<ParameterInfo> parameters = describeParameters(config_);
@@ -35,6 +35,7 @@ void TrackerNodelet::load()
   table_ = loadClassTable();
   tracker_ = std::make_unique<CloudTracker>(table_, config_.tracker);
   frame_.start(nh, config_.fixed_frame, config_.tf_wait_s);
+  return [this](const Scan& scan) { process(scan); };
 }
 
 void TrackerNodelet::process(const Scan& scan)

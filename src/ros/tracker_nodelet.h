@@ -46,8 +46,8 @@ public:
   ~TrackerNodelet() override { shutdown(); }
 
 private:
-  void load() override;
-  void process(const Scan& scan) override;
+  Work load() override;
+  void process(const Scan& scan);
   void stop() override { frame_.stop(); }
   ros::Time timeOf(const Scan& scan);
   Eigen::Isometry3d poseOf(const Scan& scan, ros::Time stamp);
