@@ -44,6 +44,11 @@ RawCloud reshapedView(const RawCloud& raw)
   return view;
 }
 
+std::uint32_t Grid::linesOf(const RawCloud& raw) const
+{
+  return (orientation == Orientation::kRowsAreRings) != reshaped ? raw.height : raw.width;
+}
+
 bool Grid::isStaggered() const
 {
   return staggered_columns > kMaxStaggeredColumns;

@@ -74,7 +74,7 @@ struct LayoutProbe::Pixel
 void LayoutProbe::Direction::reset(std::size_t lines)
 {
   pairs.assign(lines > 1 ? lines - 1 : 0, Pair());
-  elevation = azimuth = 0.0;
+  elevation = azimuth = net_azimuth = 0.0;
   other_rings = count = 0;
 }
 
@@ -88,13 +88,9 @@ void LayoutProbe::Direction::add(std::size_t line, const Pixel& here, const Pixe
   ++pairs[line].count;
   elevation += std::abs(there.sine - here.sine);
   azimuth += std::abs(turned);
+  net_azimuth += turned;
   other_rings += here.ring != there.ring;
   ++count;
-}
-
-double LayoutProbe::Direction::signedAzimuth() const
-{
-  return std::accumulate(pairs.begin(), pairs.end(), 0.0, [](double sum, const Pair& p) { return sum + p.azimuth; });
 }
 
 void LayoutProbe::look(const RawCloud& cloud, const ScanFields& fields)
@@ -172,13 +168,13 @@ double LayoutProbe::elevationStep(Orientation orientation) const
 double LayoutProbe::progress(Orientation orientation) const
 {
   const Direction& d = along(orientation);
-  return enough() && d.azimuth > 0.0 ? std::abs(d.signedAzimuth()) / d.azimuth : 1.0;
+  return enough() && d.azimuth > 0.0 ? std::abs(d.net_azimuth) / d.azimuth : 1.0;
 }
 
 double LayoutProbe::turned(Orientation orientation) const
 {
   const Direction& d = along(orientation);
-  return enough() ? d.signedAzimuth() / static_cast<double>(d.count) * static_cast<double>(d.pairs.size()) : 0.0;
+  return enough() ? d.net_azimuth / static_cast<double>(d.count) * static_cast<double>(d.pairs.size()) : 0.0;
 }
 
 double LayoutProbe::agreement(Orientation orientation, const std::vector<std::uint32_t>& row_of_line) const

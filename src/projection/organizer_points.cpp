@@ -82,7 +82,7 @@ Organizer::Decision Organizer::decideRings(const RawCloud& raw, const ScanFields
     readPoints(raw, fields, out);
     const Grid grid = gridOf(raw, fields, out, decision);
     found.rings_are_rows = true;
-    lines = (grid.orientation == Orientation::kRowsAreRings) != grid.reshaped ? raw.height : raw.width;
+    lines = grid.linesOf(raw);
     numberRings(raw, found);
   }
   else
@@ -90,8 +90,7 @@ Organizer::Decision Organizer::decideRings(const RawCloud& raw, const ScanFields
     readRings(raw, fields, found, out);
   }
   const std::uint32_t rows = rows_.byRing(out.points, ring_of_point_, lines);
-  const RingOrder& order = rows_.order();
-  if (!order.isMonotone() && !order.areDistinct() && order.goesNoWay()) throwUnsortedRings();
+  if (!rows_.order().areOrdered() && rows_.order().goesNoWay()) throwUnsortedRings();
   place(rows, decision, out);
   found.line_order = sequenceOf(rows_.order());
   return decision;

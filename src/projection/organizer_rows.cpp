@@ -10,11 +10,6 @@ namespace lidar_panoptic_clustering
 {
 namespace
 {
-std::uint32_t linesOf(const RawCloud& view, Orientation orientation)
-{
-  return orientation == Orientation::kRowsAreRings ? view.height : view.width;
-}
-
 const std::vector<ScanPoint>& readAll(const RawCloud& raw, const ScanFields& fields, OrganizedScan& out)
 {
   placeRows(raw, fields, RowPlacement(), out);
@@ -52,9 +47,7 @@ Grid Organizer::gridOf(const RawCloud& raw, const ScanFields& fields, OrganizedS
     grid.orientation = assumedOrientation(raw);
     if (climbs(grid_.probe(), grid.orientation)) throwNoGrid(raw, readAll(raw, fields, out));
   }
-  const std::uint32_t lines =
-      (grid.orientation == Orientation::kRowsAreRings) != grid.reshaped ? raw.height : raw.width;
-  if (lines > RowFinder::kMaxRings) throwManyLines(lines);
+  if (grid.linesOf(raw) > RowFinder::kMaxRings) throwManyLines(grid.linesOf(raw));
   decision.found.orientation = grid.orientation;
   decision.found.reshaped = grid.reshaped;
   decision.firm = false;
@@ -68,10 +61,10 @@ Organizer::Decision Organizer::decideRows(const RawCloud& raw, const ScanFields&
   out.points.clear();
   const Grid grid = gridOf(raw, fields, out, decision);
   const RawCloud view = grid.reshaped ? reshapedView(raw) : raw;
-  if (grid.isStaggered() || !grid.goesOneWay() || grid.turnsTwice()) refuseColumns(raw, fields, out, grid);
+  if (!grid.columnsAreFirings()) refuseColumns(raw, fields, out, grid);
   decision.placement.orientation = grid.orientation;
   placeRows(view, fields, decision.placement, out);
-  decision.found.rows = linesOf(view, grid.orientation);
+  decision.found.rows = grid.linesOf(raw);
   decision.found.columns = out.image.cloud.width;
   if (decision.found.rows <= 1)
   {
@@ -102,7 +95,7 @@ void Organizer::orderLines(const RawCloud& view, OrganizedScan& out, Decision& d
   const RingOrder& order = grid_.orderLines(out.points, view.width, found.orientation);
   if (order.tellsNothing() && found.doubt.empty()) throwNoGrid(view, out.points);
   if (order.shareElevations()) throwSharedElevations(view);
-  const bool clear = order.isMonotone() || order.areDistinct();
+  const bool clear = order.areOrdered();
   if (found.reshaped && !clear) throwNoGrid(view, out.points);
   if (clear)
   {
@@ -136,15 +129,15 @@ void Organizer::followRows(const RawCloud& raw, const ScanFields& fields, Organi
   const RawCloud& view = found.reshaped ? reshaped : raw;
   const auto contradicts = [](const char* what) { throw std::invalid_argument(what); };
   if (found.reshaped && raw.row_step != raw.width * raw.point_step) contradicts("rows are padded");
-  if (linesOf(view, found.orientation) != found.rows) contradicts("another number of rows");
+  const std::uint32_t lines = found.orientation == Orientation::kRowsAreRings ? view.height : view.width;
+  if (lines != found.rows) contradicts("another number of rows");
 
   const LayoutProbe& probe = grid_.look(view, fields);
   if (probe.enough())
   {
     const auto orientation = probe.orientation();
     if (orientation && *orientation != found.orientation && found.doubt.empty()) contradicts("rows and columns");
-    const Grid grid = grid_.gridAs(found.orientation);
-    if (orientation == found.orientation && (grid.isStaggered() || !grid.goesOneWay() || grid.turnsTwice()))
+    if (orientation == found.orientation && !grid_.gridAs(found.orientation).columnsAreFirings())
       contradicts("columns");
     if (!decision_.placement.row_of_line.empty()
             ? probe.agreement(found.orientation, decision_.placement.row_of_line) < kLeastAgreement

@@ -135,6 +135,13 @@ bool RingOrder::isMonotone() const
   return 10 * std::max(falls_, rises_) >= 9 * steps && back < 0.25 * (highest_ - lowest_);
 }
 
+void RingOrder::collectMeans() const
+{
+  means_.clear();
+  for (const Ring& ring : rings_)
+    if (ring.count > 0) means_.push_back(ring.mean);
+}
+
 /// Of rings in any sequence, a third and more go back against those a quarter of all before (as RoboSense fires), or
 /// the way from ring to ring is many times the whole (as lasers fire in turn). In the vehicle's frame, where neighbours
 /// go to and fro, sorted ones have 0 and at most 2.1 times.
@@ -143,9 +150,7 @@ bool RingOrder::goesNoWay() const
   constexpr int kFewestRings = 4;
   constexpr double kLeastMajority = 0.8, kLongestWay = 4.0;
   if (seen_ < kFewestRings || returns() < kFewest) return false;
-  means_.clear();
-  for (const Ring& ring : rings_)
-    if (ring.count > 0) means_.push_back(ring.mean);
+  collectMeans();
   const std::size_t lag = means_.size() / 4, pairs = means_.size() - lag;
   std::size_t falls = 0;
   double way = 0.0;
@@ -167,9 +172,7 @@ bool RingOrder::canBeSorted() const
 bool RingOrder::areDistinct() const
 {
   if (!canBeSorted()) return false;
-  means_.clear();
-  for (const Ring& ring : rings_)
-    if (ring.count > 0) means_.push_back(ring.mean);
+  collectMeans();
   std::sort(means_.begin(), means_.end());
   std::size_t apart = 0;
   for (std::size_t i = 1; i < means_.size(); ++i)
@@ -184,7 +187,7 @@ std::uint32_t RingOrder::returns() const
 
 bool RingOrder::shareElevations() const
 {
-  if (seen_ < 2 || returns() < kFewest || isMonotone() || areDistinct()) return false;
+  if (seen_ < 2 || returns() < kFewest || areOrdered()) return false;
   return scatter_ < 0.5 * std::max((highest_ - lowest_) / (seen_ - 1), kLeastSpacing);
 }
 

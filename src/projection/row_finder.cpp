@@ -144,7 +144,7 @@ bool RowFinder::cameRingAfterRing(std::uint32_t rows) const
   if (rows > 0 && (rings > rows || 2 * rings < rows)) return false;
   if (20 * elevation_steps_ < 19 * (rings - 1) || forward_ < 3 * backward_) return false;
   if (2 * climbs_ > steps_.size()) return false;  // firing after firing
-  return order_.isMonotone() || order_.areDistinct();
+  return order_.areOrdered();
 }
 
 void RowFinder::orderRings(const std::vector<ScanPoint>& scan, std::uint32_t rings, bool remember)

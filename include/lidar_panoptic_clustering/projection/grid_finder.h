@@ -21,6 +21,10 @@ struct Grid
   double azimuth_step = 0.0, elevation_step = 0.0;       ///< along the scan lines, see LayoutProbe
   double staggered_columns = 0.0;                        ///< see LayoutProbe
   double progress = 1.0, turned = 0.0;                   ///< see LayoutProbe
+  /// How many scan lines it has of the cloud as declared.
+  std::uint32_t linesOf(const RawCloud& raw) const;
+  /// Whether each column is a firing, and all are one scan.
+  bool columnsAreFirings() const { return !isStaggered() && goesOneWay() && !turnsTwice(); }
   /// Whether rows are no scan lines of one azimuth a column.
   bool isStaggered() const;
   /// Whether neighbouring columns are neighbours in azimuth.

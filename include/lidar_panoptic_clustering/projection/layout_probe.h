@@ -77,12 +77,12 @@ private:
   {
     std::vector<Pair> pairs;                ///< by the lower of the two rows (columns)
     double elevation = 0.0, azimuth = 0.0;  ///< sums of absolute differences
+    double net_azimuth = 0.0;               ///< of signed ones
     std::size_t other_rings = 0, count = 0;
 
     void reset(std::size_t lines);
     void add(std::size_t line, const Pixel& here, const Pixel& there);
     double meanElevation() const { return elevation / static_cast<double>(count); }
-    double signedAzimuth() const;  ///< sum of signed differences
   };
 
   void gather(const RawCloud& cloud, const ScanFields& fields, std::size_t stride);

@@ -36,6 +36,9 @@ public:
   /// come one after another. Nine in ten steps go that way, and none goes back by a quarter of the whole.
   bool isMonotone() const;
 
+  /// Whether the elevations give the rings a sequence: they are monotone or distinct.
+  bool areOrdered() const { return isMonotone() || areDistinct(); }
+
   /// Whether the elevations neither fall nor rise through the scan, though neighbours may go to and fro, as those of
   /// sorted rings do in a frame that is not the sensor's. False where there are too few returns to tell.
   bool goesNoWay() const;
@@ -43,8 +46,8 @@ public:
   /// Whether hardly any two rings share an elevation, and each keeps to its own: the mark of rings in any sequence.
   bool areDistinct() const;
 
-  /// Whether rings that each keep to an elevation share it with others: of several lidars, or of several returns of
-  /// each laser. False where there are too few returns to tell.
+  /// Whether rings that have no order each keep to an elevation, which some then share: of several lidars, or of
+  /// several returns of each laser. False where there are too few returns to tell.
   bool shareElevations() const;
 
   /// Whether a ring says nothing about the elevation: that varies within a ring as it does in the whole scan, where it
@@ -72,6 +75,7 @@ private:
   void lookAlong(const Eigen::Vector3d& axis);
   void countSteps();
   std::uint32_t returns() const;  ///< that were looked at
+  void collectMeans() const;
   Eigen::Matrix3d scatterWithinRings() const;
   Eigen::Vector3d axisOfRings() const;
   bool canBeSorted() const;
